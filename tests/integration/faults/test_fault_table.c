@@ -8,7 +8,7 @@ static void set_class(agv_fault_t fault, bool trip) {
     agv_fault_set_put(&f.config.trips, fault, trip);
 }
 
-/* Shows: SUP-4, INT-2, EPS_TEMP_ABOVE_110, COMMAND_TOO_FAST */
+/* Shows: SUP-4, INT-2, EPS_TEMP_ABOVE_110, STEERING_POSITION_TIMEOUT */
 void test_a_warning_may_be_made_a_trip(void) {
     set_class(AGV_FAULT_EPS_TEMP_ABOVE_110, true);
     set_class(AGV_FAULT_STEERING_POSITION_TIMEOUT, true);

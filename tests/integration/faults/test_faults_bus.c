@@ -452,8 +452,6 @@ void test_errors_of_the_ai_side(void) {
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_ERROR_PASSIVE));
 }
 
-/* ---- STEP_OVERRUN ---- */
-
 /* Shows: TX_STALLED, SUP-7 */
 void test_a_controller_that_accepts_nothing_is_detected_after_a_trip(void) {
     walk_to_tripped(&f);

@@ -92,18 +92,6 @@ static void no_eps_status(bool spoilt) {
     f.traffic[AGV_MSG_EPS_STATUS].muted = spoilt;
 }
 
-static void over_current(bool spoilt) {
-    f.traffic[AGV_MSG_EPS_STATUS].data[7] = spoilt ? 0x08 : 0;
-}
-
-static void position_encoder(bool spoilt) {
-    f.traffic[AGV_MSG_EPS_STATUS].data[7] = spoilt ? 0x80 : 0;
-}
-
-static void under_voltage(bool spoilt) {
-    f.traffic[AGV_MSG_EPS_STATUS].data[7] = spoilt ? 0x01 : 0;
-}
-
 static void vcu_says_hardware(bool spoilt) {
     walk_alarm(&f, spoilt ? ALARM_EPS_HARDWARE : ALARM_NONE);
 }
@@ -112,44 +100,40 @@ static void vcu_says_can(bool spoilt) {
     walk_alarm(&f, spoilt ? 0x20 : ALARM_NONE);
 }
 
-static void mode_assist(bool spoilt) {
-    f.traffic[AGV_MSG_EPS_STATUS].data[3] = spoilt ? 0x00 : 0x01;
-}
+enum { MODE = 3, FAULTS = 7 }; /* bytes of 167h */
 
-static void mode_speed(bool spoilt) {
-    f.traffic[AGV_MSG_EPS_STATUS].data[3] = spoilt ? 0x02 : 0x01;
-}
-
-static void mode_torque(bool spoilt) {
-    f.traffic[AGV_MSG_EPS_STATUS].data[3] = spoilt ? 0x03 : 0x01;
-}
-
-static void mode_off(bool spoilt) {
-    f.traffic[AGV_MSG_EPS_STATUS].data[3] = spoilt ? 0xFF : 0x01;
-}
-
-static void mode_unknown(bool spoilt) {
-    f.traffic[AGV_MSG_EPS_STATUS].data[3] = spoilt ? 0x11 : 0x01;
+static void report_eps(unsigned byte, uint8_t value) {
+    f.traffic[AGV_MSG_EPS_STATUS].data[byte] = value;
 }
 
 static const struct {
     const char *what;
     void (*spoil)(bool spoilt);
+    uint8_t byte; /* without a function: of 167h */
+    uint8_t value;
 } UNFIT[] = {
-    {"EPS frozen", eps_frozen},
-    {"no 067h", eps_silent},
-    {"no 167h", no_eps_status},
-    {"over current", over_current},
-    {"position encoder", position_encoder},
-    {"under voltage", under_voltage},
-    {"hardware fault reported by the VCU", vcu_says_hardware},
-    {"CAN fault reported by the VCU", vcu_says_can},
-    {"steering assist", mode_assist},
-    {"speed control", mode_speed},
-    {"torque control", mode_torque},
-    {"EPS off", mode_off},
-    {"unknown mode", mode_unknown},
+    {"EPS frozen", eps_frozen, 0, 0},
+    {"no 067h", eps_silent, 0, 0},
+    {"no 167h", no_eps_status, 0, 0},
+    {"hardware fault reported by the VCU", vcu_says_hardware, 0, 0},
+    {"CAN fault reported by the VCU", vcu_says_can, 0, 0},
+    {"over current", NULL, FAULTS, 0x08},
+    {"position encoder", NULL, FAULTS, 0x80},
+    {"under voltage", NULL, FAULTS, 0x01},
+    {"steering assist", NULL, MODE, 0x00},
+    {"speed control", NULL, MODE, 0x02},
+    {"torque control", NULL, MODE, 0x03},
+    {"EPS off", NULL, MODE, 0xFF},
+    {"unknown mode", NULL, MODE, 0x11},
 };
+
+static void spoil(unsigned i, bool spoilt) {
+    if (UNFIT[i].spoil != NULL) {
+        UNFIT[i].spoil(spoilt);
+    } else {
+        report_eps(UNFIT[i].byte, spoilt ? UNFIT[i].value : (UNFIT[i].byte == MODE ? 1 : 0));
+    }
+}
 
 /* Meanwhile the steering may move: the angle of the trip would turn it back. */
 /* Shows: FSM-10 */
@@ -159,11 +143,11 @@ void test_the_angle_is_held_only_while_the_eps_is_healthy(void) {
         f.what = UNFIT[i].what;
         f.long_run = true;
         trip_at(9123);
-        UNFIT[i].spoil(true);
+        spoil(i, true);
         fixture_run(&f, 100);
         expect_not_held_for_a_second();
         fixture_angle(&f, 8700);
-        UNFIT[i].spoil(false);
+        spoil(i, false);
         fixture_run(&f, 100);
         expect_held_for_a_second(8700); /* not the angle of the trip */
     }
@@ -177,7 +161,7 @@ void test_it_ends_in_the_frame_that_reports_it(void) {
     fixture_frame(&f, AGV_MSG_STEERING_COMMAND, other); /* overridden, because 065h is sent */
     TEST_ASSERT_EQUAL_UINT32(f.call, f.sent[f.sent_count - 1].call);
     fixture_run(&f, 20);
-    mode_off(true);
+    report_eps(MODE, 0xFF);
     fixture_send_now(&f, AGV_MSG_EPS_STATUS);
     fixture_forget_sent(&f);
     fixture_frame(&f, AGV_MSG_STEERING_COMMAND, other);
@@ -304,8 +288,6 @@ void test_an_angle_that_a_bus_off_discards_has_not_left(void) {
     expect_held_after_bus_off(1990, 9123);
     expect_held_after_bus_off(2012, 8700);
 }
-
-/* ---- The age of the angle ---- */
 
 /* ---- Frames that are handled late ---- */
 

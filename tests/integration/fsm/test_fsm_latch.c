@@ -63,30 +63,28 @@ static void expect_cannot_be_reset(agv_fault_t fault) {
     TEST_ASSERT_EQUAL_HEX16(AGV_MISSING_TRIP_CAUSE, missing);
 }
 
-static void expect_a_power_on_ends(agv_fault_t fault) {
-    expect_cannot_be_reset(fault);
-    fixture_restart(&f, HAL_RESET_POWER_ON);
-    expect_state(&f, AGV_STATE_INIT);
-    expect_state_after(&f, 600, AGV_STATE_STANDBY);
-    expect_output(&f, true);
-}
-
-/* Shows: FSM-9, SELF_TEST_FAILED */
-void test_a_failed_self_test_is_ended_by_a_power_on(void) {
-    start_with_failed_self_test();
-    expect_a_power_on_ends(AGV_FAULT_SELF_TEST_FAILED);
-}
-
-/* Shows: FSM-9, CONFIG_INVALID, INT-2 */
-void test_an_invalid_configuration_is_ended_by_a_power_on(void) {
-    start_with_invalid_config();
-    expect_a_power_on_ends(AGV_FAULT_CONFIG_INVALID);
-}
-
-/* Shows: FSM-9, MEMORY_CORRUPTED, INT-5 */
-void test_corrupted_memory_is_ended_by_a_power_on(void) {
-    corrupt_memory();
-    expect_a_power_on_ends(AGV_FAULT_MEMORY_CORRUPTED);
+/* Shows: FSM-9, FSM-7, INT-2, INT-5, SELF_TEST_FAILED, CONFIG_INVALID, MEMORY_CORRUPTED */
+void test_an_unresettable_fault_outlives_every_reset_but_a_power_on(void) {
+    static const struct {
+        void (*cause)(void);
+        agv_fault_t fault;
+    } ROWS[] = {{start_with_failed_self_test, AGV_FAULT_SELF_TEST_FAILED},
+                {start_with_invalid_config, AGV_FAULT_CONFIG_INVALID},
+                {corrupt_memory, AGV_FAULT_MEMORY_CORRUPTED}};
+    for (unsigned i = 0; i < 3; i++) {
+        fixture_init(&f);
+        ROWS[i].cause();
+        expect_cannot_be_reset(ROWS[i].fault);
+        for (unsigned cause = HAL_RESET_WATCHDOG; cause <= HAL_RESET_UNKNOWN; cause++) {
+            fixture_button(&f, false);
+            fixture_restart(&f, (hal_reset_cause_t)cause);
+            expect_cannot_be_reset(ROWS[i].fault);
+        }
+        fixture_restart(&f, HAL_RESET_POWER_ON);
+        expect_state(&f, AGV_STATE_INIT);
+        expect_state_after(&f, 600, AGV_STATE_STANDBY);
+        expect_output(&f, true);
+    }
 }
 
 /* Detected in TRIPPED: the first reason stays, and now only a power-on ends the safe state. */
@@ -99,10 +97,11 @@ void test_corrupted_memory_keeps_the_reason_of_an_earlier_trip(void) {
     expect_cannot_be_reset(AGV_FAULT_S_DRIVER_ALARM);
 }
 
-static void expect_the_kind_of_vehicle(const agv_config_t *config) {
+static void expect_what_fits_the_vehicle(const agv_config_t *config) {
     TEST_ASSERT_EQUAL_INT(AGV_CONFIG_OK, agv_config_check(config).problem);
     TEST_ASSERT_EQUAL_UINT16(AGV_TOPOLOGY_GATEWAY, config->topology);
     TEST_ASSERT_EQUAL_UINT16(AGV_ID_SET_TABLE, config->id_set);
+    TEST_ASSERT_EQUAL_UINT16(AGV_PARK_AT_STANDSTILL, config->park);
 }
 
 static void expect_the_identifiers(const agv_config_t *config) {
@@ -126,12 +125,13 @@ static void expect_after_a_flipped_bit(void (*expect_kept)(const agv_config_t *c
     }
 }
 
-/* The defaults are used, with this vehicle's identifiers and topology. */
-/* Shows: FSM-9, INT-5, MEMORY_CORRUPTED, P1 */
+/* The defaults are used, with this vehicle's identifiers, topology and P: the VCU does not guard P against speed. */
+/* Shows: FSM-9, FSM-1, INT-5, MEMORY_CORRUPTED, P1 */
 void test_a_corrupted_configuration_is_replaced_by_one_that_fits_the_vehicle(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     f.config.id_set = AGV_ID_SET_TABLE;
-    expect_after_a_flipped_bit(expect_the_kind_of_vehicle);
+    f.config.park = AGV_PARK_AT_STANDSTILL;
+    expect_after_a_flipped_bit(expect_what_fits_the_vehicle);
 }
 
 /* Identifiers that were changed one by one are kept, too. */
@@ -141,17 +141,6 @@ void test_a_corrupted_configuration_keeps_identifiers_that_were_changed(void) {
     f.config.id_wheel_speed = 0x102;
     f.other_ids = true;
     expect_after_a_flipped_bit(expect_the_identifiers);
-}
-
-static void expect_park_at_standstill(const agv_config_t *config) {
-    TEST_ASSERT_EQUAL_UINT16(AGV_PARK_AT_STANDSTILL, config->park);
-}
-
-/* The VCU does not guard P against speed. */
-/* Shows: FSM-9, FSM-1, INT-5, MEMORY_CORRUPTED */
-void test_a_corrupted_configuration_keeps_park_at_standstill(void) {
-    f.config.park = AGV_PARK_AT_STANDSTILL;
-    expect_after_a_flipped_bit(expect_park_at_standstill);
 }
 
 static void expect_identifiers_beside_the_status_frame(const agv_config_t *config) {
@@ -249,24 +238,4 @@ void test_the_own_heartbeat_is_frozen_if_so_chosen(void) {
     for (uint32_t n = 1; n < 30; n++) {
         TEST_ASSERT_EQUAL_HEX8(fixture_nth_sent(&f, 0x43F, 0)->data[7], fixture_nth_sent(&f, 0x43F, n)->data[7]);
     }
-}
-
-static void expect_outlives_every_other_reset(agv_fault_t fault) {
-    for (unsigned cause = HAL_RESET_WATCHDOG; cause <= HAL_RESET_UNKNOWN; cause++) {
-        fixture_button(&f, false);
-        fixture_restart(&f, (hal_reset_cause_t)cause);
-        expect_cannot_be_reset(fault);
-    }
-}
-
-/* Shows: FSM-9, FSM-7, SELF_TEST_FAILED, CONFIG_INVALID, MEMORY_CORRUPTED */
-void test_an_unresettable_fault_outlives_every_reset_but_a_power_on(void) {
-    start_with_failed_self_test();
-    expect_outlives_every_other_reset(AGV_FAULT_SELF_TEST_FAILED);
-    fixture_init(&f);
-    start_with_invalid_config();
-    expect_outlives_every_other_reset(AGV_FAULT_CONFIG_INVALID);
-    fixture_init(&f);
-    corrupt_memory();
-    expect_outlives_every_other_reset(AGV_FAULT_MEMORY_CORRUPTED);
 }

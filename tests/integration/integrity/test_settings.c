@@ -117,5 +117,3 @@ void test_times_of_the_bus(void) {
     fixture_run(&f, 1);
     TEST_ASSERT_EQUAL_UINT32(1, f.hal.can[HAL_CAN_VEHICLE].recover_requests);
 }
-
-/* ---- Engaged, not engaged, engaged again ---- */

@@ -158,16 +158,6 @@ void test_ten_gaps_in_a_row_under_half_the_cycle(void) {
     }
 }
 
-/* As a trip by setting, it trips in that frame. */
-/* Shows: SUP-6, COMMAND_TOO_FAST */
-void test_too_fast_may_be_made_a_trip(void) {
-    agv_fault_set_put(&f.config.trips, FAST, true);
-    fixture_active(&f);
-    send_first(AGV_MSG_GEAR_COMMAND);
-    send_gaps(AGV_MSG_GEAR_COMMAND, 10, 10);
-    expect_trip(&f, FAST, f.call, ANGLE_CENTRE);
-}
-
 /* Frames with a value out of range count, too (in manual they are dropped). */
 /* Shows: SUP-5, SUP-6, COMMAND_TOO_FAST */
 void test_frames_out_of_range_count_too(void) {

@@ -251,15 +251,3 @@ void test_a_vcu_that_reports_no_speed(void) {
     fixture_run(&f, 1);
     expect_warning(&f, SPEED, AGV_STATE_STANDBY);
 }
-
-/* As a trip by setting. */
-/* Shows: SUP-12, SPEED_IMPLAUSIBLE */
-void test_it_may_be_made_a_trip(void) {
-    agv_fault_set_put(&f.config.trips, SPEED, true);
-    fixture_standby(&f);
-    set_speeds(1, INT32_MAX, INT32_MAX);
-    const uint32_t began_ms = f.now_ms;
-    run_until(began_ms + 999u);
-    expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
-    expect_reason_after(&f, 1, SPEED);
-}

@@ -192,22 +192,6 @@ static void foreign_drive_at(uint32_t ms, uint16_t us) {
     agv_supervisor_frame(&f.supervisor, &f.ports, HAL_CAN_VEHICLE, &frame);
 }
 
-/* A frame stamped 0.2 ms comes after one stamped 0.9 ms: answered at 0.9 ms, so that 5.5 ms is too soon and 6.0 not. */
-/* Shows: TOP-1 */
-void test_microseconds_do_not_go_backwards_either(void) {
-    walk_to_tripped(&f);
-    fixture_forget_sent(&f);
-    const uint32_t start_ms = f.now_ms;
-    const hal_can_frame_t other = {.id = 0x700, .time_ms = start_ms, .time_us = 900};
-    agv_supervisor_frame(&f.supervisor, &f.ports, HAL_CAN_VEHICLE, &other);
-    foreign_drive_at(start_ms, 200);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
-    foreign_drive_at(start_ms + 5, 500);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
-    fixture_jump(&f, 6);
-    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
-}
-
 /* A stamp of 4294967 ms ago: 1000 times that is 2^32 but for 296 microseconds, which is no later moment of now. */
 /* Shows: TIM-2 */
 void test_a_stamp_of_a_turn_of_the_microseconds_ago_is_old(void) {
