@@ -166,12 +166,6 @@ static void hear(hal_can_frame_t frame) {
 
 void test_a_sloppy_vcu_obeys_what_bytes_are_there(void) {
     drive(AGV_GEAR_D);
-    do_it(VEHICLE_DO_STOP, false); /* node 0: the VCU itself, which forgets nothing of this */
-    do_it(VEHICLE_DO_START, true);
-    do_it(VEHICLE_DO_VCU_SLOPPY, true);
-    begin();
-    run_until(1u);
-    drive(AGV_GEAR_D);
     hear(command_frame(0x168u, 1u, HAL_CAN_FD, AGV_GEAR_P, 0u));
     run_until(3010u);
     TEST_ASSERT_EQUAL_UINT16(300u, look().throttle_permille); /* not yet sloppy */
