@@ -223,20 +223,3 @@ static void check_command(const cause_t *cause) {
 void test_each_silent_command(void) {
     check_all(BY_SILENCE_ENGAGED, check_command);
 }
-
-/* ---- Values ---- */
-
-static void check_value(const cause_t *cause) {
-    begin_case(cause, "value");
-    fixture_active(&f);
-    cause_set(f.traffic, cause, true);
-    fixture_run(&f, cause->count);
-    TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, fixture_raised(&f, cause->fault), f.what);
-    expect_tripped(&f, cause->fault);
-}
-
-/* Shows: SUP-5, AI_COMMAND_OUT_OF_RANGE, EPS_MODE_OFF, EPS_MODE_INVALID, EPS_MODE_NOT_ANGLE, GEAR_STATUS_INVALID,
-   THROTTLE_STATUS_INVALID, THROTTLE_DEVIATION, AUTOPILOT_OFF_IGNORED */
-void test_each_value(void) {
-    check_all(BY_VALUE, check_value);
-}

@@ -1,6 +1,19 @@
-/* Classes that the configuration may change, and the fault on the LED when several are active. Single rows:
- * test_fault_rows. */
+/* The table of faults: name, rank, default class and LED code, by hand; classes that the configuration may change; the
+ * fault on the LED when several are active. */
+#include "agv/names.h"
+#include "causes.h"
 #include "one_fixture.h"
+
+/* Shows: FSM-5, LED-1, SUP-4 */
+void test_names_ranks_classes_and_led_codes(void) {
+    TEST_ASSERT_EQUAL_INT(FAULT_ROWS, AGV_FAULT_COUNT);
+    for (unsigned i = 0; i < FAULT_ROWS; i++) {
+        TEST_ASSERT_EQUAL_STRING(FAULT_ROW[i].name, agv_fault_name((agv_fault_t)i));
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(i, agv_fault_from_name(FAULT_ROW[i].name), FAULT_ROW[i].name);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(FAULT_ROW[i].trip, agv_fault_is_in(&f.config.trips, i), FAULT_ROW[i].name);
+        TEST_ASSERT_EQUAL_UINT8_MESSAGE(FAULT_ROW[i].led, agv_fault_led_code(i), FAULT_ROW[i].name);
+    }
+}
 
 /* ---- Classes that configuration has changed ---- */
 

@@ -72,45 +72,6 @@ void test_safe_commands_that_wait_do_not_leave_after_init(void) {
     expect_silence(&f);
 }
 
-/* A fault of the vehicle, and the condition that STARTUP_TIMEOUT reports for it. */
-typedef struct {
-    const char *what;
-    void (*spoil)(bool spoilt);
-    uint16_t missing;
-} obstacle_t;
-
-static void freeze_vcu(bool spoilt) {
-    f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = spoilt;
-}
-
-static void freeze_eps(bool spoilt) {
-    f.traffic[AGV_MSG_STEERING_STATUS].frozen = spoilt;
-}
-
-static void mute_363(bool spoilt) {
-    f.traffic[AGV_MSG_VEHICLE_STATUS].muted = spoilt;
-}
-
-static void mute_067(bool spoilt) {
-    f.traffic[AGV_MSG_STEERING_STATUS].muted = spoilt;
-}
-
-static void mute_167(bool spoilt) {
-    f.traffic[AGV_MSG_EPS_STATUS].muted = spoilt;
-}
-
-static void mute_0a3(bool spoilt) {
-    f.traffic[AGV_MSG_GEAR_STATUS].muted = spoilt;
-}
-
-static void mute_050(bool spoilt) {
-    f.traffic[AGV_MSG_THROTTLE_STATUS].muted = spoilt;
-}
-
-static void mute_101(bool spoilt) {
-    f.traffic[AGV_MSG_WHEEL_SPEED].muted = spoilt;
-}
-
 static void turn_a_wheel(bool spoilt) {
     fixture_wheels(&f, 0, spoilt ? -50 : -49);
 }
@@ -140,26 +101,49 @@ static void bus_off(bool spoilt) {
     sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, spoilt ? HAL_CAN_BUS_OFF : HAL_CAN_ERROR_ACTIVE);
 }
 
+/* A fault of the vehicle, and the condition that STARTUP_TIMEOUT reports for it. */
+typedef struct {
+    const char *what;
+    uint16_t missing;
+    void (*spoil)(bool spoilt); /* NULL: a message is silent, or its counter stands still */
+    agv_message_t message;
+    bool freezes;
+} obstacle_t;
+
+enum {
+    NO_VCU = AGV_MISSING_VCU_HEARTBEAT | AGV_MISSING_TRIP_CAUSE | AGV_MISSING_STANDSTILL,
+    NO_EPS = AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_TRIP_CAUSE,
+    NO_STATUS = AGV_MISSING_MESSAGES | AGV_MISSING_TRIP_CAUSE
+};
+
 static const obstacle_t OBSTACLES[] = {
-    {"VCU counter stands still", freeze_vcu,
-     AGV_MISSING_VCU_HEARTBEAT | AGV_MISSING_TRIP_CAUSE | AGV_MISSING_STANDSTILL},
-    {"EPS counter stands still", freeze_eps, AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_TRIP_CAUSE},
-    {"no 363h", mute_363,
-     AGV_MISSING_VCU_HEARTBEAT | AGV_MISSING_TRIP_CAUSE | AGV_MISSING_MANUAL | AGV_MISSING_STANDSTILL},
-    {"no 067h", mute_067, AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_TRIP_CAUSE},
-    {"no 167h", mute_167, AGV_MISSING_MESSAGES | AGV_MISSING_TRIP_CAUSE},
-    {"no 0A3h", mute_0a3, AGV_MISSING_MESSAGES | AGV_MISSING_TRIP_CAUSE},
-    {"no 050h", mute_050, AGV_MISSING_MESSAGES | AGV_MISSING_TRIP_CAUSE},
-    {"no 101h", mute_101, AGV_MISSING_MESSAGES | AGV_MISSING_TRIP_CAUSE | AGV_MISSING_STANDSTILL},
-    {"a wheel turns", turn_a_wheel, AGV_MISSING_STANDSTILL},
-    {"the VCU reports a speed", report_speed, AGV_MISSING_STANDSTILL},
-    {"engaged", engage, AGV_MISSING_MANUAL},
-    {"neither mode", no_mode, AGV_MISSING_MANUAL},
-    {"VCU alarm", alarm, AGV_MISSING_TRIP_CAUSE},
-    {"EPS fault", eps_fault, AGV_MISSING_TRIP_CAUSE},
-    {"bus-off", bus_off, AGV_MISSING_TRIP_CAUSE},
+    {"VCU counter stands still", NO_VCU, NULL, AGV_MSG_VEHICLE_STATUS, true},
+    {"EPS counter stands still", NO_EPS, NULL, AGV_MSG_STEERING_STATUS, true},
+    {"no 363h", NO_VCU | AGV_MISSING_MANUAL, NULL, AGV_MSG_VEHICLE_STATUS, false},
+    {"no 067h", NO_EPS, NULL, AGV_MSG_STEERING_STATUS, false},
+    {"no 167h", NO_STATUS, NULL, AGV_MSG_EPS_STATUS, false},
+    {"no 0A3h", NO_STATUS, NULL, AGV_MSG_GEAR_STATUS, false},
+    {"no 050h", NO_STATUS, NULL, AGV_MSG_THROTTLE_STATUS, false},
+    {"no 101h", NO_STATUS | AGV_MISSING_STANDSTILL, NULL, AGV_MSG_WHEEL_SPEED, false},
+    {"a wheel turns", AGV_MISSING_STANDSTILL, turn_a_wheel, AGV_MSG_NONE, false},
+    {"the VCU reports a speed", AGV_MISSING_STANDSTILL, report_speed, AGV_MSG_NONE, false},
+    {"engaged", AGV_MISSING_MANUAL, engage, AGV_MSG_NONE, false},
+    {"neither mode", AGV_MISSING_MANUAL, no_mode, AGV_MSG_NONE, false},
+    {"VCU alarm", AGV_MISSING_TRIP_CAUSE, alarm, AGV_MSG_NONE, false},
+    {"EPS fault", AGV_MISSING_TRIP_CAUSE, eps_fault, AGV_MSG_NONE, false},
+    {"bus-off", AGV_MISSING_TRIP_CAUSE, bus_off, AGV_MSG_NONE, false},
 };
 enum { OBSTACLE_COUNT = sizeof OBSTACLES / sizeof OBSTACLES[0] };
+
+static void spoil(const obstacle_t *obstacle, bool spoilt) {
+    if (obstacle->spoil != NULL) {
+        obstacle->spoil(spoilt);
+    } else if (obstacle->freezes) {
+        f.traffic[obstacle->message].frozen = spoilt;
+    } else {
+        f.traffic[obstacle->message].muted = spoilt;
+    }
+}
 
 static void begin(const obstacle_t *obstacle) {
     const uint32_t clock_ms = start_ms;
@@ -169,7 +153,7 @@ static void begin(const obstacle_t *obstacle) {
     f.long_run = true;
     fixture_mute_ai(&f, true);
     fixture_start(&f);
-    obstacle->spoil(true);
+    spoil(obstacle, true);
 }
 
 static uint32_t startup_reports(agv_event_t *last) {
@@ -200,7 +184,7 @@ void test_init_is_left_once_the_obstacle_is_gone_and_nothing_has_latched(void) {
         begin(&OBSTACLES[i]);
         expect_state_after(&f, 10500, AGV_STATE_INIT);
         expect_reason(&f, AGV_FAULT_NONE);
-        OBSTACLES[i].spoil(false);
+        spoil(&OBSTACLES[i], false);
         expect_state_after(&f, 500, AGV_STATE_INIT); /* the first good frame or tick came 1 ms later at the earliest */
         expect_state_after(&f, 60, AGV_STATE_STANDBY);
         expect_reason(&f, AGV_FAULT_NONE);

@@ -29,6 +29,8 @@ static void expect_opens_at(uint32_t moment_ms) {
     expect_fault_after(&f, moment_ms + 500 - f.now_ms, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
     expect_output(&f, true);
     expect_fault_after(&f, 1, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
+    const agv_fault_set_t trips = agv_supervisor_active_trips(&f.supervisor);
+    TEST_ASSERT_TRUE(agv_fault_is_in(&trips, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
     expect_output(&f, false);
 }
 

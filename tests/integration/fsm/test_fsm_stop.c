@@ -18,7 +18,9 @@ static void confirm(void) {
 }
 
 static void expect_moving_fault(agv_fault_t fault, bool active) {
+    const agv_fault_set_t trips = agv_supervisor_active_trips(&f.supervisor);
     expect_fault(&f, fault, active);
+    TEST_ASSERT_EQUAL(active, agv_fault_is_in(&trips, fault));
     expect_output(&f, !active);
     expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
 }

@@ -75,15 +75,3 @@ void test_a_transient_that_has_not_ended_trips_at_the_next_engagement(void) {
     engage();
     expect_tripped(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
 }
-
-/* ACTIVE has no active faults of the AI: with the engagement the warnings of manual driving become trips. */
-/* Shows: FSM-11, SUP-8, AI_HEARTBEAT_LOST */
-void test_a_warning_in_manual_trips_at_the_engagement(void) {
-    fixture_standby(&f);
-    fixture_run(&f, 300);
-    fixture_mute_ai(&f, true);
-    expect_fault_after(&f, 1000, AGV_FAULT_AI_HEARTBEAT_LOST, true);
-    expect_state(&f, AGV_STATE_STANDBY);
-    engage();
-    expect_trip(&f, AGV_FAULT_AI_HEARTBEAT_LOST, f.call, ANGLE_CENTRE);
-}

@@ -138,7 +138,7 @@ static void check_at_engagement(agv_fault_t fault, bool *how) {
     TEST_ASSERT_EQUAL_UINT32(0, fixture_ended(&f, fault));
 }
 
-/* Shows: SUP-8, FSM-2, AI_HEARTBEAT_LOST, AI_HEARTBEAT_STUCK */
+/* Shows: SUP-8, FSM-2, FSM-11, AI_HEARTBEAT_LOST, AI_HEARTBEAT_STUCK */
 void test_lost_or_stuck_at_the_engagement_trips_at_once(void) {
     check_at_engagement(LOST, &f.traffic[AI].muted);
     fixture_init(&f);

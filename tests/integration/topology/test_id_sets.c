@@ -1,8 +1,6 @@
 /* The two identifier sets (P1): 43Fh and 363h, or 201h and 203h. Both sets are supervised alike. Traffic on the other
  * set's identifiers is never accepted, and is reported as WRONG_ID_SET. Also identifiers that are changed one by
  * one. */
-#include <string.h>
-
 #include "one_fixture.h"
 
 static const agv_fault_t WRONG = AGV_FAULT_WRONG_ID_SET;
@@ -224,45 +222,4 @@ void test_a_gateway_passes_on_the_changed_identifiers(void) {
     TEST_ASSERT_EQUAL_UINT32(4, fixture_count_sent(&f, 0x065));
     TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x363));
     TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x101));
-}
-
-static void corrupt_the_configuration(void) {
-    size_t at = 0;
-    while (memcmp(&f.supervisor.memory[at], &f.config, sizeof f.config) != 0) {
-        at++;
-        TEST_ASSERT_LESS_THAN_size_t(sizeof f.supervisor.memory - sizeof f.config, at);
-    }
-    f.supervisor.memory[at + AGV_SETTING_own_heartbeat * sizeof(uint16_t)] ^= 0x80u;
-}
-
-/* The configuration falls back to the defaults, except the identifiers. The oracle checks the sent frames. */
-/* Shows: P1, INT-5, MEMORY_CORRUPTED */
-void test_a_corrupted_supervisor_keeps_the_changed_identifiers(void) {
-    change_ids();
-    fixture_active(&f);
-    corrupt_the_configuration();
-    expect_reason_after(&f, 1, AGV_FAULT_MEMORY_CORRUPTED);
-    fixture_mute_ai(&f, true);
-    fixture_forget_sent(&f);
-    expect_count_after(&f, 1000, 0x43F, 10);
-    TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x168));
-    TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x075));
-}
-
-/* One changed identifier; the others follow the set. */
-/* Shows: P1 */
-void test_an_identifier_that_is_not_changed_is_that_of_the_set(void) {
-    agv_ids_t ids;
-    f.config.id_set = AGV_ID_SET_TABLE;
-    f.config.id_gear_command = 0x169;
-    agv_config_ids(&f.config, &ids);
-    TEST_ASSERT_EQUAL_HEX16(0x201, ids.of[AGV_MSG_TURN_SIGNAL_COMMAND]);
-    TEST_ASSERT_EQUAL_HEX16(0x169, ids.of[AGV_MSG_GEAR_COMMAND]);
-    TEST_ASSERT_EQUAL_HEX16(0x075, ids.of[AGV_MSG_THROTTLE_COMMAND]);
-    TEST_ASSERT_EQUAL_HEX16(0x203, ids.of[AGV_MSG_VEHICLE_STATUS]);
-    f.config.id_turn_signal_command = 0x201; /* the table's own, whichever set is asked for */
-    f.config.id_vehicle_status = 0x203;
-    f.other_ids = true;
-    fixture_active(&f);
-    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
 }
