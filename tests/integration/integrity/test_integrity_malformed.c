@@ -102,24 +102,6 @@ void test_malformed_frames_change_nothing_in_the_gateway(void) {
     go_through_the_states(AGV_TOPOLOGY_GATEWAY);
 }
 
-/*
- * Of one identifier: lengths 0 to 7 are 8. Of the 15 combinations of flags each counts once: 8 have the error bit; of the
- * others 4 the extended one; of the others 2 the remote one; one is left with the FD bit alone.
- */
-/* Shows: INT-2, P15 */
-void test_each_kind_is_counted(void) {
-    fixture_standby(&f);
-    const agv_counters_t before = *agv_supervisor_counters(&f.supervisor);
-    pester(HAL_CAN_VEHICLE, 0x0A3);
-    const agv_counters_t *after = agv_supervisor_counters(&f.supervisor);
-    TEST_ASSERT_EQUAL_UINT32(before.rejected[AGV_REJECTED_LENGTH] + 8, after->rejected[AGV_REJECTED_LENGTH]);
-    TEST_ASSERT_EQUAL_UINT32(before.rejected[AGV_REJECTED_ERROR] + 8, after->rejected[AGV_REJECTED_ERROR]);
-    TEST_ASSERT_EQUAL_UINT32(before.rejected[AGV_REJECTED_EXTENDED] + 4, after->rejected[AGV_REJECTED_EXTENDED]);
-    TEST_ASSERT_EQUAL_UINT32(before.rejected[AGV_REJECTED_REMOTE] + 2, after->rejected[AGV_REJECTED_REMOTE]);
-    TEST_ASSERT_EQUAL_UINT32(before.rejected[AGV_REJECTED_FD] + 1, after->rejected[AGV_REJECTED_FD]);
-    TEST_ASSERT_EQUAL_UINT32(before.received + 23, after->received);
-}
-
 /* A frame with an unknown identifier is ignored, whatever its length. */
 /* Shows: INT-2 */
 void test_other_identifiers_are_received_and_nothing_else(void) {

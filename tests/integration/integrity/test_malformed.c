@@ -21,6 +21,7 @@ static const kind_t KINDS[] = {
     {"FD with 7 bytes", HAL_CAN_FD, 7, AGV_REJECTED_FD},
     {"remote", HAL_CAN_REMOTE, 8, AGV_REJECTED_REMOTE},
     {"remote, none asked for", HAL_CAN_REMOTE, 0, AGV_REJECTED_REMOTE},
+    {"remote FD", HAL_CAN_REMOTE | HAL_CAN_FD, 8, AGV_REJECTED_REMOTE},
     {"extended", HAL_CAN_EXTENDED, 8, AGV_REJECTED_EXTENDED},
     {"extended remote", HAL_CAN_EXTENDED | HAL_CAN_REMOTE, 8, AGV_REJECTED_EXTENDED},
     {"extended FD", HAL_CAN_EXTENDED | HAL_CAN_FD, 8, AGV_REJECTED_EXTENDED},

@@ -27,19 +27,7 @@ static void expect_steering(uint16_t commanded, uint16_t passed) {
     expect_pass(0x065, command, expected);
 }
 
-/* 100.0 degrees a second are 2.5 degrees, 25 counts, in 25 ms. */
-/* Shows: TOP-2 */
-void test_steering_is_limited_to_the_slew_rate(void) {
-    f.config.steering_slew_ddeg_s = 1000;
-    fixture_active(&f);
-    fixture_run_past(&f, AGV_MSG_STEERING_COMMAND); /* 9000, as measured */
-    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
-    expect_steering(9060, 9025);
-    expect_steering(9060, 9050);
-    expect_steering(8000, 9025);
-}
-
-/* So does the first command of the next engagement, independent of the last one of this engagement. */
+/* 100.0 degrees a second are 2.5 degrees, 25 counts, in 25 ms; from the measured angle with every engagement. */
 /* Shows: TOP-2 */
 void test_the_slew_rate_starts_anew_with_every_engagement(void) {
     f.config.steering_slew_ddeg_s = 1000;
@@ -227,17 +215,7 @@ static void active_with_a_rise(void) {
     fixture_run(&f, 100);
 }
 
-/* 25 counts in 100 ms, from 0 on; down at once. */
-/* Shows: TOP-2 */
-void test_the_throttle_rises_no_faster_than_its_rate(void) {
-    active_with_a_rise();
-    expect_rise(250, 25);
-    expect_rise(250, 50);
-    expect_rise(10, 10);
-    expect_rise(250, 35);
-}
-
-/* With each engagement from 0. */
+/* 25 counts in 100 ms; with each engagement from 0. */
 /* Shows: TOP-2 */
 void test_the_rise_begins_anew_with_every_engagement(void) {
     active_with_a_rise();
