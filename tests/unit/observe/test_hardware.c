@@ -155,20 +155,6 @@ void test_the_time_is_a_setting(unsigned setting_ms) {
 }
 
 /* Shows: HW-1 */
-void test_the_time_goes_down_by_1_ms_in_2(void) {
-    inputs.output_feedback = CLOSED;
-    ticks(60); /* 60 */
-    inputs.output_feedback = OPEN;
-    ticks(60); /* 30 */
-    inputs.output_feedback = CLOSED;
-    begin();
-    ticks(69);
-    TEST_ASSERT_FALSE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
-    ticks(1);
-    TEST_ASSERT_TRUE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
-}
-
-/* Shows: HW-1 */
 void test_the_fault_ends_when_the_time_is_used_up(void) {
     inputs.output_feedback = CLOSED;
     ticks(5000); /* no more than 100 */
@@ -257,46 +243,6 @@ void test_how_much_of_a_late_tick_counts(int before, bool closes, int at_its_end
     inputs.output_feedback = (uint8_t)at_its_end;
     tick_after(10);
     TEST_ASSERT_EQUAL_UINT16(value_ms, hardware.mismatch.value_ms);
-}
-
-/* Ticks that are all late by 4 ms count 5 ms each. */
-/* Shows: HW-1 */
-void test_late_ticks_add_up(void) {
-    inputs.output_feedback = CLOSED;
-    begin();
-    for (unsigned i = 0; i < 19; i++) {
-        tick_after(5);
-    }
-    TEST_ASSERT_FALSE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
-    tick_after(5);
-    TEST_ASSERT_TRUE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
-}
-
-/* The time does not go past its limit: 1 ms less half a ms, then 49 times 2 ms are 98.5 ms. */
-/* Shows: HW-1 */
-void test_half_a_millisecond_does_not_carry_the_time_past_its_limit(void) {
-    inputs.output_feedback = CLOSED;
-    begin();
-    inputs.output_feedback = OPEN;
-    begin(); /* 1 */
-    inputs.output_feedback = CLOSED;
-    begin(); /* less half a ms */
-    for (unsigned i = 0; i < 49; i++) {
-        tick_after(2);
-    }
-    TEST_ASSERT_FALSE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
-    tick_after(2);
-    TEST_ASSERT_TRUE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
-}
-
-/* Shows: HW-1 */
-void test_a_late_tick_takes_all_of_its_time_away(void) {
-    inputs.output_feedback = CLOSED;
-    begin();
-    ticks(100);
-    inputs.output_feedback = OPEN;
-    tick_after(0xFFFFFFFF);
-    TEST_ASSERT_FALSE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
 }
 
 /* A board has its feedback always. One that is gone is a wrong contact in both positions. */
