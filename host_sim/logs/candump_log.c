@@ -29,6 +29,8 @@ bool candump_open(candump_log_t *log, const char *path, bool skip_bad) {
     log->is_checked = false;
     log->format = CANDUMP_FORMAT_UNKNOWN;
     log->frameless = 0u;
+    log->newest_us = UINT64_MAX;
+    log->late_line = 0u;
     log->screen = (candump_screen_t){0};
     log->asc = (vector_asc_t){0};
     gunzip_init(&log->gunzip);
@@ -54,7 +56,8 @@ const char *candump_format_name(candump_format_t format) {
     return names[format];
 }
 
-bool candump_reject(candump_log_t *log, const char *wrong) {
+/** A bad line. @return true: it is skipped and counted. false: that is the end; was reported. */
+static bool pass_over(candump_log_t *log, const char *wrong) {
     if (log->skip_bad) {
         log->skipped++;
         return true;
@@ -237,6 +240,30 @@ static bool may_lack_data(const candump_log_t *log, const hal_can_frame_t *frame
            ((frame->flags & (HAL_CAN_FD | HAL_CAN_REMOTE)) == 0u);
 }
 
+/**
+ * Whether a time stamp follows the one before. One that is too late is a bad line; when the next one agrees with it, the
+ * clock was set, and no line after it can be skipped either.
+ */
+static const char *check_stamp(candump_log_t *log, uint64_t stamp_us) {
+    const bool is_first = log->newest_us == UINT64_MAX;
+    const bool is_late = !is_first && (stamp_us > log->newest_us) && (stamp_us - log->newest_us > CANDUMP_GAP_MAX_US);
+    if (!is_late) {
+        log->newest_us = (is_first || (stamp_us > log->newest_us)) ? stamp_us : log->newest_us;
+        log->late_line = 0u;
+        return NULL;
+    }
+    const uint64_t apart_us = (stamp_us > log->late_us) ? stamp_us - log->late_us : log->late_us - stamp_us;
+    if ((log->late_line != 0u) && (apart_us <= CANDUMP_GAP_MAX_US)) {
+        log->line = log->late_line;
+        log->is_cut_off = false;
+        log->skip_bad = false;
+        return "the clock was set: from here on, the time stamps are more than 100 days later; cut the log here";
+    }
+    log->late_us = stamp_us;
+    log->late_line = log->line;
+    return "the time stamp is more than 100 days after the previous one; if the clock was set, cut the log here";
+}
+
 static void leave_out(candump_log_t *log) {
     log->skipped++;
     note("%s:%" PRIu64 ": the log ends in this line, which may be cut off; it is left out", log->name, log->line);
@@ -257,11 +284,12 @@ candump_result_t candump_next(candump_log_t *log, candump_record_t *record) {
             leave_out(log);
             return CANDUMP_END;
         }
+        wrong = (wrong == NULL) ? check_stamp(log, record->stamp_us) : wrong;
         if (wrong == NULL) {
             log->frameless = 0u;
             return CANDUMP_RECORD;
         }
-        if ((wrong != LOG_NO_FRAME) && !is_blank_line && !candump_reject(log, wrong)) {
+        if ((wrong != LOG_NO_FRAME) && !is_blank_line && !pass_over(log, wrong)) {
             return CANDUMP_FAILED;
         }
     }

@@ -2,6 +2,9 @@
  * @file candump_log.h
  * A log of frames, read from a file or a pipe as a stream: fixed buffers, logs of any length.
  *
+ * A line with a time stamp that is more than 100 days after the one before is a bad line. If the line after it is as
+ * late, the clock was set: the reading ends there, also where bad lines are skipped, or the whole rest would be.
+ *
  * Read are `candump -l`, what candump shows on the screen with time stamps (candump_screen.h), and Vector ASC
  * (vector_asc.h), each also compressed with gzip. The content tells the format, not the name. Of other known formats the
  * message says how to convert them (log_foreign.h).
@@ -25,6 +28,8 @@
 #define CANDUMP_FRAMELESS_MAX (1024ull << 20u)
 /** @} */
 
+#define CANDUMP_GAP_MAX_US 8640000000000u /**< the longest that a log may be silent: 100 days */
+
 /** The format of a log. */
 typedef enum { CANDUMP_FORMAT_UNKNOWN, CANDUMP_FORMAT_LOG, CANDUMP_FORMAT_SCREEN, CANDUMP_FORMAT_ASC } candump_format_t;
 
@@ -44,6 +49,9 @@ typedef struct {
     bool is_checked; /**< its first bytes are not those of a binary format */
     candump_format_t format;
     uint64_t frameless; /**< bytes read since the last frame */
+    uint64_t newest_us; /**< the latest time stamp; UINT64_MAX: none yet */
+    uint64_t late_us;   /**< a time stamp that was too late, */
+    uint64_t late_line; /**< and its line; 0: the last frame was in time */
     candump_screen_t screen;
     vector_asc_t asc;
     gunzip_t gunzip;
@@ -71,13 +79,6 @@ bool candump_open(candump_log_t *log, const char *path, bool skip_bad);
  * @param record is valid until the next call
  */
 candump_result_t candump_next(candump_log_t *log, candump_record_t *record);
-
-/**
- * Treat the line that was read last as a bad one after all.
- * @param wrong what is wrong with it
- * @return true: it is skipped and counted. false: that is the end; was reported.
- */
-bool candump_reject(candump_log_t *log, const char *wrong);
 
 /** Close it. */
 void candump_close(candump_log_t *log);

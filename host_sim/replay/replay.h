@@ -17,8 +17,8 @@
 #include "common/report.h"
 #include "hal/reset.h"
 
-/** The longest tail, and the longest that a log may be silent: a stamp that is later is a bad line. 100 days. */
-#define REPLAY_GAP_MAX_MS 8640000000u
+/** The longest tail: 100 days. */
+#define REPLAY_TAIL_MAX_MS 8640000000u
 
 /** Who wants to know what came of it, instead of a text on standard output. */
 typedef struct {

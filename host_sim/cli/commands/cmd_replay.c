@@ -33,7 +33,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_FLAG("--fail-on-trip", "exit status 1 if it tripped, nothing was supervised, or the time goes back",
                     &given->request.fail_on_trip),
         OPTION_DURATION("--tail", "continue for this time after the last line (0)", &given->request.tail_ms, 0,
-                        REPLAY_GAP_MAX_MS),
+                        REPLAY_TAIL_MAX_MS),
         OPTION_DURATION("--start-ms", "the supervisor's clock at the start (0)", &given->start_ms, 0, UINT32_MAX),
         OPTION_FLAG("--skip-bad-lines", "skip and count lines that are not frames", &given->request.skip_bad_lines),
         OPTION_TEXT("--ai-if", "NAME", "interface of the AI side; selects the gateway topology",

@@ -101,14 +101,41 @@ void test_bad_lines_are_skipped_and_counted_on_demand(void) {
     TEST_ASSERT_EQUAL_STRING("", scratch_said());
 }
 
-void test_a_line_may_be_rejected_after_reading(void) {
-    open_text(LINE, sizeof LINE - 1u, false);
-    TEST_ASSERT_EQUAL_INT(CANDUMP_RECORD, candump_next(log_file, &record));
-    TEST_ASSERT_FALSE(candump_reject(log_file, "not that one"));
-    (void)scratch_said_line("log:1: not that one\n");
-    log_file->skip_bad = true;
-    TEST_ASSERT_TRUE(candump_reject(log_file, "not that one"));
-    TEST_ASSERT_EQUAL_UINT64(1, log_file->skipped);
+#define DAYS_100 "(8640001.000000) can0 43F#\n"   /* the longest gap after LINE */
+#define DAYS_101 "(8640001.000001) can0 43F#\n"   /* too long */
+#define DAYS_200 "(17280001.000002) can0 43F#\n"  /* and too long after that */
+#define DAYS_200B "(17280001.000001) can0 43F#\n" /* but not this one */
+
+void test_a_time_stamp_of_100_days_later_is_a_bad_line(void) {
+    open_text(LINE DAYS_100, sizeof LINE DAYS_100 - 1u, false);
+    TEST_ASSERT_EQUAL_UINT(2, read_all(CANDUMP_END));
+    candump_close(log_file);
+    open_text(LINE DAYS_101 LINE, sizeof LINE DAYS_101 LINE - 1u, false);
+    TEST_ASSERT_EQUAL_UINT(1, read_all(CANDUMP_FAILED));
+    (void)scratch_said_line("log:2: the time stamp is more than 100 days after the previous one; if the clock was set, "
+                            "cut the log here\n");
+}
+
+void test_single_wild_time_stamps_are_skipped(void) {
+    static const char text[] = LINE DAYS_101 LINE DAYS_101 DAYS_200 LINE DAYS_200;
+    open_text(text, sizeof text - 1u, true);
+    TEST_ASSERT_EQUAL_UINT(3, read_all(CANDUMP_END));
+    TEST_ASSERT_EQUAL_UINT64(4, log_file->skipped);
+    TEST_ASSERT_EQUAL_STRING("", scratch_said());
+}
+
+/* Else the whole rest of the log would be skipped. */
+void test_a_clock_that_was_set_ends_the_reading_also_where_bad_lines_are_skipped(void) {
+    static const char *const pairs[] = {DAYS_101 DAYS_101 LINE, DAYS_101 DAYS_200B, DAYS_200B "bad\n" DAYS_101};
+    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
+        char text[256];
+        (void)snprintf(text, sizeof text, LINE "bad\n%s", pairs[i]);
+        open_text(text, strlen(text), true);
+        TEST_ASSERT_EQUAL_UINT(1, read_all(CANDUMP_FAILED));
+        (void)scratch_said_line("log:3: the clock was set: from here on, the time stamps are more than 100 days later; "
+                                "cut the log here\n");
+        candump_close(log_file);
+    }
 }
 
 void test_a_blank_line_that_is_too_long_is_a_bad_one(void) {

@@ -219,6 +219,15 @@ class Time(hostsim.Case):
                              "--skip-bad-lines", "--tail=0")
         self.assertEqual((result.summary()["skipped_lines"], result.summary()["t_ms"]), (1, 1000))
 
+    def test_a_clock_that_was_set_hides_no_trip(self):
+        """Else every later line would be skipped, and with it the trip."""
+        frames = traffic.log(traffic.frames(1500, engage_ms=1000), base_us=10 * S).splitlines(keepends=True)
+        later = traffic.log(traffic.frames(3000, engage_ms=0, edit=stop(AI, 1000))).splitlines(keepends=True)
+        self.assert_refused(self.refuse("".join(frames + later), "--skip-bad-lines", "--fail-on-trip"),
+                            "log:%d: the clock was set" % (len(frames) + 1))
+        for command in (("survey",), ("monitor", "--speed=max", "--log"), ("scenario", "--from")):
+            self.assert_refused(self.run_program(*command, "log"), "log:%d: " % (len(frames) + 1), "100 days")
+
 
 class Events(hostsim.Case):
     def test_the_first_and_the_last_lines(self):
