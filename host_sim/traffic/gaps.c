@@ -14,14 +14,13 @@ static size_t cell_of(uint64_t gap_us) {
     return (cell < GAPS_CELLS) ? cell : GAPS_CELLS - 1u;
 }
 
-/** The longest gap of a cell. */
-static uint64_t longest_gap_of(size_t cell) {
-    if (cell < 2u * GAPS_CELLS_PER_OCTAVE) {
+/** The shortest gap that a cell can have. */
+static uint64_t begin_of(size_t cell) {
+    const size_t octave = cell / GAPS_CELLS_PER_OCTAVE;
+    if (octave < 2u) {
         return cell;
     }
-    const uint32_t octave = (uint32_t)(cell / GAPS_CELLS_PER_OCTAVE) - 1u;
-    const uint64_t mantissa = (cell % GAPS_CELLS_PER_OCTAVE) + GAPS_CELLS_PER_OCTAVE;
-    return ((mantissa + 1u) << octave) - 1u;
+    return (uint64_t)((cell % GAPS_CELLS_PER_OCTAVE) + GAPS_CELLS_PER_OCTAVE) << (octave - 1u);
 }
 
 void gaps_add(gaps_t *gaps, uint64_t begin_us, uint64_t gap_us) {
@@ -33,23 +32,33 @@ void gaps_add(gaps_t *gaps, uint64_t begin_us, uint64_t gap_us) {
         gaps->longest_at_us = begin_us;
     }
     gaps->count++;
-    gaps->cells[cell_of(gap_us)]++;
+    const size_t index = cell_of(gap_us);
+    gaps_cell_t *cell = &gaps->cells[index];
+    const uint32_t more = (uint32_t)(gap_us - begin_of(index));
+    cell->shortest = ((cell->count == 0u) || (more < cell->shortest)) ? more : cell->shortest;
+    cell->longest = (more > cell->longest) ? more : cell->longest;
+    cell->count++;
 }
 
 /** The cell of the gap with this rank, the shortest one having rank 1. @param before the gaps in the cells before */
 static size_t cell_of_rank(const gaps_t *gaps, uint64_t rank, uint64_t *before) {
     size_t cell = 0u;
     *before = 0u;
-    while ((cell < GAPS_CELLS - 1u) && (*before + gaps->cells[cell] < rank)) {
-        *before += gaps->cells[cell];
+    while ((cell < GAPS_CELLS - 1u) && (*before + gaps->cells[cell].count < rank)) {
+        *before += gaps->cells[cell].count;
         cell++;
     }
     return cell;
 }
 
-static uint64_t clamp(const gaps_t *gaps, uint64_t gap_us) {
-    const uint64_t most_us = (gap_us < gaps->longest_us) ? gap_us : gaps->longest_us;
-    return (most_us > gaps->shortest_us) ? most_us : gaps->shortest_us;
+/** The gap of a cell at a place of its gaps, 0 being that of the shortest one. */
+static uint64_t gap_of(const gaps_t *gaps, size_t index, uint64_t place) {
+    if (index == GAPS_CELLS - 1u) {
+        return gaps->longest_us;
+    }
+    const gaps_cell_t *cell = &gaps->cells[index];
+    const uint64_t range = cell->longest - cell->shortest;
+    return begin_of(index) + cell->shortest + ((range == 0u) ? 0u : (range * place) / (cell->count - 1u));
 }
 
 uint64_t gaps_quantile_us(const gaps_t *gaps, uint32_t permille) {
@@ -60,12 +69,7 @@ uint64_t gaps_quantile_us(const gaps_t *gaps, uint32_t permille) {
     const uint64_t rank = (least > 0u) ? least : 1u;
     uint64_t before = 0u;
     const size_t cell = cell_of_rank(gaps, rank, &before);
-    if (cell == GAPS_CELLS - 1u) {
-        return gaps->longest_us;
-    }
-    const uint64_t width_us = longest_gap_of(cell) - ((cell > 0u) ? longest_gap_of(cell - 1u) : 0u);
-    const uint64_t above = gaps->cells[cell] - (rank - before); /* gaps of the cell that are longer */
-    return clamp(gaps, longest_gap_of(cell) - ((width_us * above) / gaps->cells[cell]));
+    return gap_of(gaps, cell, rank - before - 1u);
 }
 
 uint64_t gaps_without_longest_us(const gaps_t *gaps, uint64_t longer) {
@@ -74,13 +78,13 @@ uint64_t gaps_without_longest_us(const gaps_t *gaps, uint64_t longer) {
     }
     uint64_t before = 0u;
     const size_t cell = cell_of_rank(gaps, gaps->count - longer, &before);
-    return clamp(gaps, (cell == GAPS_CELLS - 1u) ? gaps->longest_us : longest_gap_of(cell));
+    return gap_of(gaps, cell, (uint64_t)gaps->cells[cell].count - 1u);
 }
 
 uint64_t gaps_longer_than(const gaps_t *gaps, uint64_t limit_us) {
     uint64_t longer = 0u;
     for (size_t cell = cell_of(limit_us) + 1u; cell < GAPS_CELLS; cell++) {
-        longer += gaps->cells[cell];
+        longer += gaps->cells[cell].count;
     }
     return longer;
 }

@@ -42,6 +42,30 @@ void test_equal_gaps_are_exact(void) {
     TEST_ASSERT_EQUAL_UINT64(10000, gaps_without_longest_us(&gaps, 10));
 }
 
+/* A median below the cycle of a sender that is never late would be a wrong figure. */
+void test_equal_gaps_are_exact_beside_a_shorter_and_a_longer_one(void) {
+    gaps_add(&gaps, 0, 31000);
+    gaps_add(&gaps, 0, 700000);
+    for (unsigned i = 0; i < 29; i++) {
+        gaps_add(&gaps, 0, 100000);
+    }
+    TEST_ASSERT_EQUAL_UINT64(100000, gaps_quantile_us(&gaps, 50));
+    TEST_ASSERT_EQUAL_UINT64(100000, gaps_quantile_us(&gaps, 500));
+    TEST_ASSERT_EQUAL_UINT64(100000, gaps_without_longest_us(&gaps, 1));
+}
+
+/* 65536 to 66559 us is one cell. */
+void test_gaps_of_one_cell_are_between_its_shortest_and_its_longest(void) {
+    gaps_add(&gaps, 0, 1000);
+    for (unsigned i = 0; i <= 4; i++) {
+        gaps_add(&gaps, 0, 65600 + (100 * i));
+    }
+    TEST_ASSERT_EQUAL_UINT64(65600, gaps_quantile_us(&gaps, 333));
+    TEST_ASSERT_EQUAL_UINT64(65800, gaps_quantile_us(&gaps, 600));
+    TEST_ASSERT_EQUAL_UINT64(66000, gaps_quantile_us(&gaps, 1000));
+    TEST_ASSERT_EQUAL_UINT64(66000, gaps_without_longest_us(&gaps, 4));
+}
+
 void test_ranks_within_the_promised_error(void) {
     for (uint64_t us = 1; us <= 100000; us++) {
         gaps_add(&gaps, 0, us);
