@@ -7,6 +7,7 @@
 
 #include "agv/names.h"
 #include "text/units.h"
+#include "text/words.h"
 
 enum { MEDIAN = 500, CYCLES = 3, PERMILLE = 1000, OUTAGES_MAX = 10, ROUND_MS = 5, STATUS_ID_LOWEST = 0x7F1 };
 
@@ -46,17 +47,18 @@ static habit_t habit_of(const gaps_t *gaps) {
     return habit;
 }
 
-/** The gaps that were late at the proposed deadline: no setting hides them. */
+/** The gaps that were late at the proposed deadline: no setting hides them. If most are late, it is no outage. */
 static void note_late(proposal_t *proposal, const traffic_id_t *entry, const char *name) {
     const traffic_watch_t *watch = entry->watch;
     const uint64_t deadline_us = (uint64_t)agv_config_get(&proposal->config, watch->setting) * US_PER_MS;
     if ((watch->gaps.count > 0u) && (watch->gaps.longest_us > deadline_us)) {
-        const uint64_t late = gaps_longer_than(&watch->gaps, deadline_us);
-        note(proposal,
-             "%03Xh %s: %" PRIu64
-             " gap%s of up to %.1f ms, the longest at %.3f s; an outage, not a slow sender: %s stays",
-             entry->id, name, (late > 0u) ? late : 1u, (late > 1u) ? "s" : "", ms_of_us(watch->gaps.longest_us),
-             s_of_us(watch->gaps.longest_at_us), agv_setting_info(watch->setting)->name);
+        const uint64_t longer = gaps_longer_than(&watch->gaps, deadline_us);
+        const uint64_t late = (longer > 0u) ? longer : 1u;
+        const bool is_slow = gaps_quantile_us(&watch->gaps, MEDIAN) > deadline_us;
+        note(proposal, "%03Xh %s: %" PRIu64 " gap%s of up to %.1f ms, the longest at %.3f s; %s %s%s", entry->id, name,
+             late, words_plural(late), ms_of_us(watch->gaps.longest_us), s_of_us(watch->gaps.longest_at_us),
+             is_slow ? "a sender that is too slow for" : "an outage, not a slow sender:",
+             agv_setting_info(watch->setting)->name, is_slow ? "" : " stays");
     }
 }
 
@@ -69,8 +71,9 @@ static void propose_deadline(proposal_t *proposal, const traffic_id_t *entry) {
         return;
     }
     if (watch->gaps.count < PROPOSAL_GAPS_MIN) {
-        note(proposal, "%03Xh %s: %" PRIu64 " gaps%s are too few to judge its deadline", entry->id, name,
-             watch->gaps.count, (watch->when == TRAFFIC_ENGAGED) ? " while engaged" : "");
+        note(proposal, "%03Xh %s: %" PRIu64 " gap%s%s, too few to judge its deadline", entry->id, name,
+             watch->gaps.count, words_plural(watch->gaps.count),
+             (watch->when == TRAFFIC_ENGAGED) ? " while engaged" : "");
     } else {
         proposal->judged++;
         const habit_t habit = habit_of(&watch->gaps);
@@ -107,8 +110,9 @@ static void propose_counter(proposal_t *proposal, const traffic_id_t *entry, uin
     case COUNTER_ANY:
         note(proposal,
              "%03Xh %s: %" PRIu64 " of %" PRIu64
-             " steps of its counter were not by 1 to 3, the first at %.3f s: %s stays any",
-             entry->id, name, use->other_steps, use->steps + use->other_steps, s_of_us(use->other_at_us),
+             " steps of its counter %s not by 1 to 3, the first at %.3f s: %s stays any",
+             entry->id, name, use->other_steps, use->steps + use->other_steps,
+             (use->other_steps == 1u) ? "was" : "were", s_of_us(use->other_at_us),
              agv_setting_info((uint16_t)setting)->name);
         break;
     case COUNTER_STUCK:
@@ -126,17 +130,17 @@ static void note_values(proposal_t *proposal, const traffic_id_t *entry) {
         const signal_info_t *info = signals_info(entry->message, i);
         const traffic_range_t *range = &entry->ranges[i];
         if ((info->kind == SIGNAL_ALARM) && (range->set > 0u)) {
-            note(proposal, "%s was set in %" PRIu64 " frames, first at %.3f s: its class stays %s", info->name,
-                 range->set, s_of_us(range->set_at_us),
+            note(proposal, "%s was set in %" PRIu64 " frame%s, first at %.3f s: its class stays %s", info->name,
+                 range->set, words_plural(range->set), s_of_us(range->set_at_us),
                  agv_class_name(agv_config_is_trip(&proposal->config, info->fault) ? AGV_CLASS_TRIP : AGV_CLASS_WARN));
         } else if (range->invalid > 0u) {
-            note(proposal, "%03Xh %s: %" PRIu64 " frames with an invalid %s; no setting allows them", entry->id,
-                 signals_message_name(entry->message), range->invalid, info->name);
+            note(proposal, "%03Xh %s: %" PRIu64 " frame%s with an invalid %s; no setting allows that", entry->id,
+                 signals_message_name(entry->message), range->invalid, words_plural(range->invalid), info->name);
         }
     }
     if (entry->malformed > 0u) {
-        note(proposal, "%03Xh %s: %" PRIu64 " frames of another length or kind; they count as silence", entry->id,
-             signals_message_name(entry->message), entry->malformed);
+        note(proposal, "%03Xh %s: %" PRIu64 " frame%s of another length or kind, which is as silence", entry->id,
+             signals_message_name(entry->message), entry->malformed, words_plural(entry->malformed));
     }
 }
 

@@ -5,6 +5,7 @@
 #include "survey/survey_result.h"
 #include "text/text.h"
 #include "text/units.h"
+#include "text/words.h"
 
 enum { MEDIAN = 500, P999 = 999, BITS_PER_WORD = 32, WORD_CHOICES = 256, LINE_SIZE = 160, UNKNOWN_SHOWN_MAX = 40 };
 
@@ -183,8 +184,8 @@ static void print_alarms(const survey_result_t *result) {
             const signal_info_t *info = signals_info(entry->message, signal);
             const traffic_range_t *range = &entry->ranges[signal];
             if ((info->kind == SIGNAL_ALARM) && (range->set > 0u)) {
-                (void)printf("  %03Xh  %-26s %" PRIu64 " frames, first at %.3f s\n", entry->id, info->name, range->set,
-                             s_of_us(range->set_at_us));
+                (void)printf("  %03Xh  %-26s %" PRIu64 " frame%s, first at %.3f s\n", entry->id, info->name, range->set,
+                             words_plural(range->set), s_of_us(range->set_at_us));
                 any = true;
             }
         }

@@ -115,6 +115,21 @@ class Proposal(Case):
         self.assertEqual(self.settings()["throttle_status_timeout_ms"], "500")
         self.assertTrue(any("must be faster" in note for note in survey["proposal"]["notes"]))
 
+    def test_a_slow_sender_is_no_outage_and_one_frame_is_singular(self):
+        slow = slower("steering_command", 8)
+
+        def edit(frame):
+            data = {"throttle_command": bytes([101 * 10 // 4]) + bytes(7), "turn_signal_command": bytes(7) + b"\x80"}
+            if frame.t_ms // 100 == 50 and frame.name in data:
+                frame.data = data[frame.name]
+            return slow(frame)
+        notes = self.survey(traffic.frames(20000, 1000, edit=edit))["proposal"]["notes"]
+        self.assertTrue(any("ms, the longest at" in note and note.endswith(
+            "; a sender that is too slow for steering_command_timeout_ms") for note in notes), notes)
+        for beginning in ("075h throttle_command: 1 frame with an invalid throttle; no setting allows that",
+                          "43Fh turn_signal_command: 2 of 199 steps of its counter were not by 1 to 3, "):
+            self.assertTrue(any(note.startswith(beginning) for note in notes), notes)
+
     def test_the_other_id_set(self):
         survey = self.survey(traffic.frames(MINUTE, ENGAGED, ids=traffic.TABLE_IDS))
         self.assertEqual(self.settings()["id_set"], "table")
