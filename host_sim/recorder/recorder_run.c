@@ -73,9 +73,11 @@ static void find_run(work_t *work) {
     work->count = end - first;
 }
 
+/** "of run 0", "of runs 0, 1" */
 static void print_runs(const work_t *work) {
     const recorder_events_t *events = &work->events;
-    (void)printf("; runs");
+    const bool is_one = events->events[0].run == events->events[events->count - 1u].run;
+    (void)printf(" of run%s", is_one ? "" : "s");
     for (size_t i = 0u; i < events->count; i++) {
         if ((i == 0u) || (events->events[i].run != events->events[i - 1u].run)) {
             (void)printf("%s %u", (i == 0u) ? "" : ",", events->events[i].run);

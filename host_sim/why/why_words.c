@@ -135,6 +135,14 @@ static void add_from(text_t *text, const char *words, uint64_t t_us) {
     }
 }
 
+/** "from 1.200 s on"; nothing where a flight recorder does not know the time. */
+static void add_since(text_t *text, const char *words, uint64_t t_us) {
+    if (t_us != WHY_NEVER) {
+        add_from(text, words, t_us);
+        text_add(text, " on");
+    }
+}
+
 static void say_silence(text_t *text, const why_t *why, const why_trip_t *trip) {
     text_add(text, trip->was_heard ? "was silent" : "was never received");
     add_from(text, ": last at ", trip->last_good_us);
@@ -177,8 +185,8 @@ static void add_payload(text_t *text, const why_trip_t *trip) {
 }
 
 static void say_stuck(text_t *text, const why_trip_t *trip) {
-    add_from(text, "kept its alive counter from ", trip->cause_us);
-    text_add(text, " on");
+    text_add(text, "kept its alive counter");
+    add_since(text, " from ", trip->cause_us);
     add_payload(text, trip);
     add_from(text, ": last change at ", trip->last_good_us);
     text_add(text, ", deadline %" PRId64 " ms", trip->limit);
@@ -186,8 +194,7 @@ static void say_stuck(text_t *text, const why_trip_t *trip) {
 
 static void say_bit(text_t *text, const why_trip_t *trip) {
     text_add(text, "reported %s", agv_fault_name(trip->reason));
-    add_from(text, " from ", trip->cause_us);
-    text_add(text, " on");
+    add_since(text, " from ", trip->cause_us);
     add_payload(text, trip);
 }
 
@@ -240,15 +247,13 @@ static void say_vehicle(text_t *text, const why_t *why, const why_trip_t *trip) 
     } else {
         add_meaning(text, why, trip);
     }
-    add_from(text, ", from ", trip->cause_us);
-    text_add(text, " on");
+    add_since(text, ", from ", trip->cause_us);
 }
 
 static void say_lasting(text_t *text, const why_t *why, const why_trip_t *trip) {
     add_meaning(text, why, trip);
     if (trip->cause_us != trip->t_us) {
-        add_from(text, ", from ", trip->cause_us);
-        text_add(text, " on");
+        add_since(text, ", from ", trip->cause_us);
     }
 }
 

@@ -43,7 +43,7 @@ class Recorder(hostsim.Case):
 
     def test_the_text_says_what_happened_and_why(self):
         text = self.recorder(self.dump())
-        self.assertEqual(text.splitlines()[:2], ["dump: 10 events; runs 0",
+        self.assertEqual(text.splitlines()[:2], ["dump: 10 events of run 0",
                                                  "run 0       10 events, 0.000 s to 4.007 s of its clock"])
         for line in ("tripped     at 3.107 s: STEERING_COMMAND_TIMEOUT",
                      "  why       065h steering_command was silent: last at 2.981 s, deadline 125 ms",
@@ -70,7 +70,7 @@ class Recorder(hostsim.Case):
 
     def test_a_single_event(self):
         lines = self.recorder(self.events[0]).splitlines()
-        self.assertTrue(lines[0].startswith("dump: 1 event; runs 0"), lines)
+        self.assertTrue(lines[0].startswith("dump: 1 event of run 0"), lines)
         self.assertTrue(lines[1].startswith("run 0       1 event, 0.000 s to 0.000 s"), lines)
 
     def test_why_is_that_of_the_replay(self):
@@ -107,11 +107,22 @@ class Recorder(hostsim.Case):
             for key in ("t_ms", "reason", "message", "cause_ms", "limit", "unit"):
                 self.assertEqual(found[key], replayed[key], key)
 
+    def test_a_cause_whose_time_the_recorder_does_not_know(self):
+        def edit(frame):
+            if frame.name == "vehicle_status" and 1500 <= frame.t_ms < 3500:
+                frame.data = frame.data[:6] + bytes([0x40 if frame.t_ms // 250 % 2 else 0x80]) + frame.data[7:]
+            return frame
+        self.write("x.log", traffic.log(traffic.frames(4000, engage_ms=1000, edit=edit)))
+        self.run_good("replay", "--store", "flapping", "x.log")
+        text = " ".join(self.run_good("recorder", "flapping").stdout.split())
+        self.assertIn("why 363h vehicle_status changed between manual and autopilot too often (at most three "
+                      "engagements in 5000 ms) then ", text)
+
     def test_runs(self):
         self.write("short.log", traffic.log(traffic.frames(300)))
         self.run_good("replay", "--store", "store", "--reset-cause", "watchdog", "short.log")
         text = self.run_good("recorder", "store").stdout
-        self.assertIn("; runs 0, 1\n", text)
+        self.assertIn(" of runs 0, 1\n", text)
         self.assertIn("run 0  ", text)  # run 1 only continues its trip
         self.assertIn("tripped     at 3.107 s", text)
         self.assertIn("tripped     at 0.000 s: STEERING_COMMAND_TIMEOUT",
@@ -148,7 +159,7 @@ class Recorder(hostsim.Case):
         damaged = bytearray(self.events[3])
         damaged[20] ^= 1
         self.events[3] = bytes(damaged)
-        self.assertTrue(self.recorder(self.dump()).startswith("dump: 9 events (1 more is damaged); runs 0\n"))
+        self.assertTrue(self.recorder(self.dump()).startswith("dump: 9 events (1 more is damaged) of run 0\n"))
 
     def test_a_ring_that_was_overwritten(self):
         self.events = self.events[4:]
