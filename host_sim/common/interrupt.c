@@ -7,7 +7,7 @@
 /* How long a signal may go unnoticed in a wait. */
 enum { LOOK_EVERY_MS = 100 };
 
-static const int held[] = {SIGINT, SIGTERM, SIGHUP};
+static const int held[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 static const size_t held_count = sizeof held / sizeof held[0];
 
 static void make_set(sigset_t *set) {

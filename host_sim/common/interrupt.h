@@ -1,7 +1,7 @@
 /**
  * @file interrupt.h
- * Delays SIGINT, SIGTERM and SIGHUP while a temporary file exists. The program polls for them between two steps, removes the
- * file, and then lets them act.
+ * Delays SIGINT, SIGTERM, SIGHUP and SIGQUIT while a temporary file exists. The program polls for them between two steps,
+ * removes the file, and then lets them act.
  */
 #ifndef HOST_SIM_INTERRUPT_H
 #define HOST_SIM_INTERRUPT_H
@@ -11,7 +11,7 @@
 /** What to wait for. */
 typedef enum { INTERRUPT_READ, INTERRUPT_WRITE } interrupt_for_t;
 
-/** Hold SIGINT, SIGTERM and SIGHUP back from now on. */
+/** Hold these signals back from now on. */
 void interrupt_hold(void);
 
 /** Whether one of them came while they are held back. Cheap enough for every thousandth step, not for every one. */

@@ -203,7 +203,7 @@ static bool run(live_t *live) {
         write_out(live, now_ms);
         const uint32_t what = linux_loop_wait(&live->loop);
         now_ms = node_now_us(live->node) / US_PER_MS;
-        if (((what & LINUX_LOOP_SIGNAL) != 0u) || (now_ms >= end_ms)) {
+        if (((what & LINUX_LOOP_SIGNAL) != 0u) || interrupt_pending() || (now_ms >= end_ms)) {
             break;
         }
         if ((what & LINUX_LOOP_TICK) == 0u) {

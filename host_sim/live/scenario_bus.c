@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "common/interrupt.h"
 #include "common/report.h"
 #include "hal_linux/linux_can.h"
 #include "hal_linux/linux_clock.h"
@@ -276,7 +277,7 @@ static bool advance(run_t *run) {
     const uint32_t what = linux_loop_wait(&run->loop);
     const bool is_tick = (what & LINUX_LOOP_TICK) != 0u;
     const uint64_t t_ms = now_ms(run);
-    if ((what & LINUX_LOOP_SIGNAL) != 0u) {
+    if (((what & LINUX_LOOP_SIGNAL) != 0u) || interrupt_pending()) {
         return report("interrupted");
     }
     if (!do_steps(run, t_ms)) {

@@ -74,6 +74,10 @@ static ssize_t read_file(void *ctx, void *bytes, size_t size) {
             return -1;
         }
         const ssize_t count = read(log->fd, bytes, size);
+        if ((count == 0) && interrupt_pending()) { /* Ctrl-C ended what wrote the log, too */
+            log->interrupted = true;
+            return -1;
+        }
         if (count >= 0) {
             return count;
         }

@@ -3,6 +3,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "common/interrupt.h"
 #include "hal_linux/linux_can.h"
 #include "hal_linux/linux_loop.h"
 #include "survey/sources.h"

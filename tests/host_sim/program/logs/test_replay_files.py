@@ -2,6 +2,7 @@
 import gzip
 import os
 import re
+import resource
 import signal
 import subprocess
 import time
@@ -139,7 +140,9 @@ class Outputs(hostsim.Case):
         self.assertEqual(os.readlink(self.folder / "link"), "nothing")
 
     def test_a_signal_leaves_nothing_behind(self):
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))  # for SIGQUIT
+        for number, ends_input in ((signal.SIGINT, False), (signal.SIGTERM, False), (signal.SIGHUP, False),
+                                   (signal.SIGQUIT, False), (signal.SIGINT, True)):  # Ctrl-C hits both ends of a pipe
             with subprocess.Popen([hostsim.PROGRAM, "replay", "--out", "out", "--events", "events", "-"],
                                   cwd=self.folder, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as program:
                 program.stdin.write(LOG.encode())
@@ -149,6 +152,8 @@ class Outputs(hostsim.Case):
                     time.sleep(0.01)
                 self.assertEqual(len(self.files()), 2)  # both under their temporary names
                 program.send_signal(number)
+                if ends_input:
+                    program.stdin.close()
                 self.assertEqual(program.wait(timeout=30), -number)
                 self.assertEqual(program.stderr.read(), b"")
             self.assertEqual(self.files(), [])
