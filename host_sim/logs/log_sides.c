@@ -18,8 +18,7 @@ bool log_sides_check(bool is_gateway, const char *ai_interface) {
     return true;
 }
 
-void log_sides_note_silent(const char *ai_interface, bool was_heard) {
-    if ((ai_interface != NULL) && !was_heard) {
-        note("the log has no frame from %s, the AI side", ai_interface);
-    }
+bool log_sides_check_heard(const char *ai_interface, bool was_heard, const char *heard) {
+    return (ai_interface == NULL) || was_heard ||
+           report("--ai-if: the log has no frame from %s, but from %s", ai_interface, heard);
 }

@@ -14,7 +14,12 @@
  */
 bool log_sides_check(bool is_gateway, const char *ai_interface);
 
-/** Print when the log had no frame of the given interface: the AI side was then silent in the whole run. */
-void log_sides_note_silent(const char *ai_interface, bool was_heard);
+/**
+ * Whether the log, which is over, had a frame of the given interface. Without one the name is wrong.
+ * @param ai_interface NULL: not given
+ * @param heard the other interfaces of the log, or one of them
+ * @return false: it had none; was reported
+ */
+bool log_sides_check_heard(const char *ai_interface, bool was_heard, const char *heard);
 
 #endif

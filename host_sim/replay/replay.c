@@ -212,6 +212,9 @@ static bool put_files_in_place(replay_t *replay) {
 /** The log is over: write what comes last, put every file in its place. @return false: reported. */
 static bool conclude(replay_t *replay) {
     const replay_request_t *request = replay->request;
+    if (!log_sides_check_heard(request->ai_interface, replay->ai_was_heard, replay->sent.interfaces[HAL_CAN_VEHICLE])) {
+        return false;
+    }
     events_summary_t summary;
     events_summarise(&replay->session, &summary);
     summary.skipped_lines = replay->log.skipped;
@@ -238,9 +241,6 @@ static bool conclude(replay_t *replay) {
     text_t back = {.used = 0u};
     const bool is_whole = (why_supervised_us(why) > 0u) && !replay_text_goes_back(&back, &replay->heard);
     replay->unmet = request->fail_on_trip && ((why_trip_count(why) > 0u) || !is_whole);
-    if (good) {
-        log_sides_note_silent(request->ai_interface, replay->ai_was_heard);
-    }
     return good;
 }
 

@@ -7,6 +7,7 @@
 
 #include "common/interrupt.h"
 #include "io/output.h"
+#include "logs/log_sides.h"
 #include "survey/survey_result.h"
 
 enum { REASON_SIZE = 160 };
@@ -107,14 +108,10 @@ static bool print(survey_result_t *result) {
     return good;
 }
 
-/** Without frames of the AI side there is nothing to survey there: the name is wrong. @return false: was reported */
 static bool check_ai_side(const survey_result_t *result) {
     char names[OBSERVATION_NAMES_SIZE];
-    if ((result->request->ai_interface == NULL) || result->source.has_ai_side) {
-        return true;
-    }
     observation_interfaces(&result->observation, names);
-    return report("--ai-if: the log has no frame from %s, only from %s", result->request->ai_interface, names);
+    return log_sides_check_heard(result->request->ai_interface, result->source.has_ai_side, names);
 }
 
 static bool run(survey_result_t *result) {

@@ -185,8 +185,8 @@ static bool run_all(run_t *run) {
         monitor_file_remark(&run->file);
     }
     const bool is_read = (run->request->log != NULL) && !run->file.has_next && !run->file.failed;
-    if (is_read) {
-        log_sides_note_silent(run->request->ai_interface, run->file.ai_was_heard);
+    if (is_read && !log_sides_check_heard(run->request->ai_interface, run->file.ai_was_heard, run->file.interface)) {
+        return false;
     }
     return !run->failed && !run->file.failed;
 }

@@ -482,10 +482,18 @@ class Interfaces(hostsim.Case):
 
     # Shows: FOREIGN_COMMAND_SENDER, SUP-6
     def test_an_interface_that_is_not_the_ai_side_is_the_vehicle_side(self):
-        result = self.gateway("--ai-if", "ai1")
+        def edit(frame):
+            frame.interface = "ai0" if frame.name in AI and frame.t_ms >= 100 else frame.interface
+            return frame
+        result = self.gateway("--ai-if", "ai1", ai_interface="ai1", edit=edit)
         self.assertEqual(result.summary()["final_state"], "INIT")
         self.assertIn("FOREIGN_COMMAND_SENDER", [name for _, name, _ in result.faults()])
-        self.assertIn("the log has no frame from ai1", result.stderr)
+
+    def test_an_ai_side_that_the_log_does_not_have(self):
+        log = traffic.log(traffic.frames(100, interface="veh0", ai_interface="ai0"))
+        result = self.refuse(log, "--ai-if", "ai1")
+        self.assertEqual((result.status, result.stderr.splitlines()[-1]),
+                         (2, "host_sim: --ai-if: the log has no frame from ai1, but from veh0"))
 
     def test_an_interface_of_the_ai_side_makes_a_gateway(self):
         log = traffic.log(traffic.frames(2000, engage_ms=1000, interface="veh0", ai_interface="ai0"))
@@ -504,7 +512,7 @@ class Interfaces(hostsim.Case):
         self.assert_refused(self.refuse(log, "--topology=gateway", "--ai-if=0123456789abcdef"), "--ai-if", "too long")
         self.write("c.yaml", "topology: gateway\n")
         self.assert_refused(self.refuse(log, "--config", "c.yaml"), "--ai-if")
-        self.replay(log, "--config", "c.yaml", "--ai-if", "can1")
+        self.replay(log, "--config", "c.yaml", "--ai-if", "can0")
 
 
 class Restart(hostsim.Case):

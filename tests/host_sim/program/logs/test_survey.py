@@ -483,7 +483,7 @@ class Text(Case):
             survey = json.loads(self.run_good("survey", "--json", *arguments, "log").stdout)
             self.assertEqual((survey["interfaces"], survey["more_interfaces"]),
                              (said.split(" and")[0].rsplit(", 8 frames")[0].split(", "), more))
-        self.assert_refused(self.run_program("survey", "--ai-if", "ai", "log"), "only from " + eight + " and others")
+        self.assert_refused(self.run_program("survey", "--ai-if", "ai", "log"), "but from " + eight + " and others")
 
     def test_the_proposal_alone(self):
         self.write("log", traffic.log(traffic.frames(2000)))
@@ -555,7 +555,7 @@ class Refused(Case):
             self.write("log", traffic.log(traffic.frames(500, ai_interface=ai_interface)))
             for arguments in ((), ("--json",), ("--config-out", "config.yaml")):
                 result = self.run_program("survey", "--ai-if", "can9", *arguments, "log")
-                self.assert_refused(result, "--ai-if: the log has no frame from can9, only from " + heard)
+                self.assert_refused(result, "--ai-if: the log has no frame from can9, but from " + heard)
                 self.assertEqual((result.stdout, self.files()), ("", ["log"]))
 
 
