@@ -17,7 +17,7 @@ typedef struct {
 } log_foreign_t;
 
 /** Room for what log_foreign_advice() writes. */
-#define LOG_FOREIGN_TEXT_SIZE 900u
+#define LOG_FOREIGN_TEXT_SIZE 450u
 
 /** Write what a file is and what to do: "a Vector BLF log; convert it: ...". @param path a name longer than 150 is "FILE" */
 void log_foreign_advice(char text[LOG_FOREIGN_TEXT_SIZE], const log_foreign_t *format, const char *path);
