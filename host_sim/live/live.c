@@ -8,6 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "agv/names.h"
 #include "analysis/analysis.h"
 #include "common/interrupt.h"
 #include "config/config_text.h"
@@ -20,8 +21,10 @@
 #include "live/node.h"
 #include "logs/sent_log.h"
 #include "monitor/companion/monitor_companion.h"
+#include "text/text.h"
 #include "text/units.h"
 #include "ui/summary.h"
+#include "ui/why_text.h"
 
 /** The files that are written. */
 enum { OUT, EVENTS, OUTPUTS };
@@ -35,6 +38,7 @@ typedef struct {
     live_files_t files;
     uint64_t opened_us;  /**< when the node was opened, by the time of day */
     bool tripped;        /**< at any time */
+    uint16_t missing;    /**< AGV_MISSING_* bits: what INIT waited for last */
     bool stdout_is_free; /**< no output goes there */
     bool is_terminal;    /**< standard output is one, and free for the status line */
     live_status_t status;
@@ -49,6 +53,9 @@ static void on_event(void *ctx, const session_event_t *event) {
     live_t *live = ctx;
     const bool is_state = !event->is_led && (event->recorded.kind == (uint8_t)AGV_EVENT_STATE);
     live->tripped = live->tripped || (is_state && agv_state_is_latched((agv_state_t)event->recorded.b));
+    if (!event->is_led && (event->recorded.kind == (uint8_t)AGV_EVENT_STARTUP)) {
+        live->missing = event->recorded.missing;
+    }
     monitor_companion_event(&live->screen, event);
     if (live_output_has_room(&live->outputs[EVENTS])) {
         events_write(&live->outputs[EVENTS].lines, event);
@@ -215,6 +222,20 @@ static bool run(live_t *live) {
     return good;
 }
 
+static void print_not_supervised(const live_t *live) {
+    static const char label[] = "NOT SUPERVISED: ";
+    const char *between = ", missing: ";
+    text_t text = {.used = 0u};
+    text_add(&text, "never left INIT");
+    for (uint8_t bit = 0u; agv_missing_name(bit) != NULL; bit++) {
+        if (((live->missing >> bit) & 1u) != 0u) {
+            text_add(&text, "%s%s", between, agv_missing_name(bit));
+            between = ", ";
+        }
+    }
+    why_text_line(label, (int)strlen(label), text.bytes);
+}
+
 static void print_summary(const live_t *live, const events_summary_t *summary) {
     const char *ai = live->request->bus.interfaces[HAL_CAN_AI];
     char more[LINUX_CAN_NAME_MAX + sizeof ", "] = "";
@@ -222,6 +243,9 @@ static void print_summary(const live_t *live, const events_summary_t *summary) {
         (void)snprintf(more, sizeof more, ", %s", ai);
     }
     summary_print_time(summary, live->request->bus.interfaces[HAL_CAN_VEHICLE], more);
+    if (summary->supervised_ms == 0u) {
+        print_not_supervised(live);
+    }
     summary_print_frames(summary, live->request->config.shadow == AGV_SHADOW_ON);
     (void)printf("warnings: %" PRIu32 "\n", summary->counters.warnings);
     summary_print_state(summary);
@@ -262,7 +286,8 @@ static status_t run_prepared(live_t *live) {
     if (!good) {
         return STATUS_UNUSABLE;
     }
-    return (live->tripped && live->request->fail_on_trip) ? STATUS_UNMET : STATUS_OK;
+    const bool is_met = !live->tripped && (summary.supervised_ms > 0u);
+    return (!is_met && live->request->fail_on_trip) ? STATUS_UNMET : STATUS_OK;
 }
 
 status_t live_run(const live_request_t *request) {

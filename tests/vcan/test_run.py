@@ -124,9 +124,17 @@ class Supervises(Case):
     @on_time
     def test_no_trip_is_no_failure(self):
         self.player()
-        status, _, errors = self.run_to_end("run", "--can", "vcan0", "--config", self.config, "--fail-on-trip", "--for",
-                                            "700")
+        status, output, errors = self.run_to_end("run", "--can", "vcan0", "--config", self.config, "--fail-on-trip",
+                                                 "--for", "1500")
         self.assertEqual((status, errors.count("\n")), (0, 1), errors)  # one note: what is not the default
+        self.assertNotIn("NOT SUPERVISED", output)
+
+    @on_time
+    def test_a_bus_on_which_nothing_was_supervised_is_a_failure(self):
+        for arguments, expected in (((), 0), (("--fail-on-trip",), 1)):
+            status, output, _ = self.run_to_end("run", "--can", "vcan0", *arguments, "--for", "700")
+            self.assertEqual(status, expected)
+            self.assertRegex(output, r"\Avcan0: .* s\nNOT SUPERVISED: never left INIT\nframes: ")
 
     @on_time
     def test_shadow_sends_nothing(self):
@@ -182,8 +190,8 @@ class Ends(Case):
                 self.assertEqual(process.end(number), 0)
                 bus.forget()
                 self.assertEqual(bus.listen(0.3), [])
-                self.assertRegex(process.text(), r"\Avcan0: \d+\.\d{3} s\nframes: 0 received, 0 of them rejected, "
-                                                 r"0 dropped; \d+ sent\nwarnings: \d+\nfinal state: INIT, first reason: "
+                self.assertRegex(process.text(), r"\Avcan0: \d+\.\d{3} s\nNOT SUPERVISED: never left INIT\n"
+                                                 r"frames: 0 received, 0 of them rejected, 0 dropped; \d+ sent\nwarnings: \d+\nfinal state: INIT, first reason: "
                                                  r"none\n\Z")
 
     @on_time

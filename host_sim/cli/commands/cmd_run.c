@@ -31,7 +31,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     interface_options_init(&request->bus, interface_rows);
     analysis_options_init(&given->analysis, analysis_rows);
     const option_t rows[] = {
-        OPTION_FLAG("--fail-on-trip", "exit status 1 if it tripped at any time", &request->fail_on_trip),
+        OPTION_FLAG("--fail-on-trip", "exit status 1 if it tripped at any time, or never left INIT",
+                    &request->fail_on_trip),
         OPTION_TEXT("--events", "FILE", "events as JSON Lines, as they come", &request->events),
         OPTION_TEXT("--out", "FILE", "candump log of the frames that the supervisor sends", &request->out),
         OPTION_FLAG("--screen", "on a terminal: the screen of host_sim monitor", &request->screen),
