@@ -37,7 +37,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         .usage = "atlas [OPTION]...",
         .summary =
             "Cause every ordered pair of faults on the simulated bus, in every state in which the first one can\n"
-            "happen, in both topologies, 0, 1, 50 and 500 ms apart, and compare each pair with each of the two "
+            "happen, in both topologies, 0, 1, 50 and 500 ms apart, and compare each pair with each of the two\n"
             "alone.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],

@@ -62,8 +62,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_syntax_t syntax = {
         .usage = "campaign --runs N --seed S [OPTION]... | campaign --merge FILE...",
         .summary =
-            "Inject random faults on the simulated bus in virtual time (fault, time, phases of all senders, bit rate,\n"
-            "topology, ID set, kind of vehicle), check each run, and summarise the reaction times.\n",
+            "Inject random faults on the simulated bus in virtual time (fault, time, phases of all senders, bit\n"
+            "rate, topology, ID set, kind of vehicle), check each run, and summarise the reaction times.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .examples = examples,

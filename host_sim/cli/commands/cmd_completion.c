@@ -21,9 +21,8 @@ status_t cmd_completion(int argc, char **argv) {
     const option_syntax_t syntax = {
         .usage = "completion " SHELLS,
         .summary =
-            "Print a script that completes command lines of host_sim in a shell. Installation sets it up. To use "
-            "it in\n"
-            "the current shell: source <(host_sim completion bash)\n",
+            "Print a script that completes command lines of host_sim in a shell. Installation sets it up. To use\n"
+            "it in the current shell: source <(host_sim completion bash)\n",
         .operands_min = 1u,
         .operands_max = 1u,
         .operand = "SHELL",

@@ -30,9 +30,9 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     };
     const analysis_command_t command = {
         .usage = "recorder [OPTION]... FILE",
-        .summary = "Show what the flight recorder of a device kept: what its shell's 'agv dump' printed, what a "
-                   "debugger dumped\n"
-                   "of its memory, or the --store file of replay (- = standard input).\n",
+        .summary =
+            "Show what the flight recorder of a device kept: what its shell's 'agv dump' printed, what a debugger\n"
+            "dumped of its memory, or the --store file of replay (- = standard input).\n",
         .operand = "FILE",
         .config_title = "Configuration of the device",
         .rows = rows,

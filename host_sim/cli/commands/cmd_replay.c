@@ -54,9 +54,9 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     };
     const analysis_command_t command = {
         .usage = "replay [OPTION]... LOG",
-        .summary = "Replay a recorded log to the supervisor in virtual time, and say whether, when and why it would\n"
-                   "have stopped the vehicle. LOG is candump -l, candump -t a or Vector ASC, also gzip'd; - = standard "
-                   "input.\n",
+        .summary =
+            "Replay a recorded log to the supervisor in virtual time, and say whether, when and why it would have\n"
+            "stopped the vehicle. LOG is candump -l, candump -t a or Vector ASC, also gzip'd; - = standard input.\n",
         .operand = "LOG",
         .config_title = "Configuration of the supervisor",
         .rows = rows,

@@ -52,9 +52,9 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_syntax_t syntax = {
         .usage = "run --can IF [OPTION]...",
         .summary =
-            "Run the supervisor as a node on SocketCAN, in real time, until SIGINT, SIGTERM or SIGHUP. It stops at\n"
-            "once then: only frames that it has already handed to the kernel still leave. On a terminal it shows\n"
-            "its state while it runs.\n",
+            "Run the supervisor as a node on SocketCAN, in real time, until SIGINT, SIGTERM or SIGHUP. It stops\n"
+            "at once then: only frames that it has already handed to the kernel still leave. On a terminal it\n"
+            "shows its state while it runs.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .instead = "--can",

@@ -49,8 +49,8 @@ static options_result_t parse(int argc, char **argv, given_t *given, size_t *ope
         .summary =
             "Show what is on a bus: each message with its gaps and the margin to its deadline, counters, values,\n"
             "alarms, unknown identifiers and what they may be, load. At the end: a configuration that would fit,\n"
-            "each setting with its reason. LOG is candump -l, candump -t a or Vector ASC, also gzip'd; - = standard\n"
-            "input. Nothing is sent.\n",
+            "each setting with its reason. LOG is candump -l, candump -t a or Vector ASC, also gzip'd; - =\n"
+            "standard input. Nothing is sent.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .examples = examples,

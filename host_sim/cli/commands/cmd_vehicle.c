@@ -57,16 +57,13 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_syntax_t syntax = {
         .usage = "vehicle --can IF [OPTION]...",
         .summary =
-            "Simulate VCU, EPS and AI computer as nodes on SocketCAN, in real time, until SIGINT, SIGTERM or SIGHUP.\n"
-            "They obey the commands on the bus. After 1.5 s the operator engages the autopilot, and the AI computer\n"
-            "drives: gear D, throttle 30 %.\n"
-            "\n"
-            "Inject faults, and any other step of a scenario, by option: --fault ai-stop@2s or\n"
-            "--fault eps-set,field=faults,value=08h@3s; or type them while it runs: 'ai stop', 'eps set "
-            "field=faults\n"
-            "value=08h'. 'help' lists them; 'status' and 'quit' are commands, too. Times are 250ms, 1.5s, or "
-            "milliseconds\n"
-            "alone; identifiers are 168h, 0x168 or decimal 360.\n",
+            "Simulate VCU, EPS and AI computer as nodes on SocketCAN, in real time, until SIGINT, SIGTERM or\n"
+            "SIGHUP. They obey the commands on the bus. After 1.5 s the operator engages the autopilot, and the\n"
+            "AI computer drives: gear D, throttle 30 %.\n\n"
+            "Inject faults, and any other step of a scenario, by option: --fault ai-stop@2s or --fault\n"
+            "eps-set,field=faults,value=08h@3s; or type them while it runs: 'ai stop', 'eps set field=faults\n"
+            "value=08h'. 'help' lists them; 'status' and 'quit' are commands, too. Times are 250ms, 1.5s, or\n"
+            "milliseconds alone; identifiers are 168h, 0x168 or decimal 360.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .instead = "--can",

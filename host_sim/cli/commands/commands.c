@@ -82,7 +82,7 @@ void command_print_help(void) {
                  "\n"
                  "Commands:\n");
     for (size_t i = 0u; i < COMMAND_COUNT; i++) {
-        (void)printf("  %-11s %s\n", COMMANDS[i].name, COMMANDS[i].help);
+        options_print_from(printf("  %-11s ", COMMANDS[i].name), COMMANDS[i].help);
     }
     (void)printf("\n"
                  "  -h, --help     print this help; after a command: its options (also host_sim help COMMAND)\n"
@@ -92,6 +92,6 @@ void command_print_help(void) {
                  "\n"
                  "Exit status:\n");
     for (size_t i = 0u; i < EXIT_STATUS_COUNT; i++) {
-        (void)printf("  %d  %s\n", (int)EXIT_STATUSES[i].status, EXIT_STATUSES[i].means);
+        options_print_from(printf("  %d  ", (int)EXIT_STATUSES[i].status), EXIT_STATUSES[i].means);
     }
 }
