@@ -54,7 +54,9 @@ static void print_head(const replay_text_t *replay) {
     if (strlen(name) + strlen(": ") + text.used <= (size_t)WHY_TEXT_COLUMNS) {
         (void)printf("%s: %s\n", name, text.bytes);
     } else {
-        (void)printf("%s:\n", name);
+        text_t line = {.used = 0u};
+        text_add(&line, "%s:", name);
+        why_text_line("", 0, line.bytes);
         why_text_line("", WHY_TEXT_LABEL, text.bytes);
     }
 }
@@ -64,13 +66,14 @@ static replay_clues_t clues_of(const replay_text_t *replay) {
         .config = replay->config, .heard = replay->heard, .ai_interface = replay->ai_interface, .why = replay->why};
 }
 
-static void print_hints(const replay_text_t *replay) {
+/** @param has_parent a line above it says what was not supervised */
+static void print_hints(const replay_text_t *replay, bool has_parent) {
     const replay_clues_t clues = clues_of(replay);
     text_t text = {.used = 0u};
     for (int hint = 0; hint < (int)REPLAY_HINTS; hint++) {
         text_clear(&text);
         if (replay_hint(&text, (replay_hint_t)hint, &clues)) {
-            why_text_line("  hint", WHY_TEXT_LABEL, text.bytes);
+            why_text_line(has_parent ? "  hint" : "hint", WHY_TEXT_LABEL, text.bytes);
         }
     }
 }
@@ -137,15 +140,19 @@ bool replay_text_goes_back(text_t *text, const replay_heard_t *heard) {
     return true;
 }
 
-static void print_not_supervised(const replay_text_t *replay) {
+/** @return false: there is nothing to say */
+static bool print_not_supervised(const replay_text_t *replay) {
     text_t text = {.used = 0u};
-    if (add_not_supervised(&text, replay)) {
+    const bool is_part = add_not_supervised(&text, replay);
+    if (is_part) {
         why_text_line("NOT SUPERVISED: ", NOT_SUPERVISED_LABEL, text.bytes);
     }
     text_clear(&text);
-    if (replay_text_goes_back(&text, replay->heard)) {
+    const bool goes_back = replay_text_goes_back(&text, replay->heard);
+    if (goes_back) {
         why_text_line("NOT SUPERVISED: ", NOT_SUPERVISED_LABEL, text.bytes);
     }
+    return is_part || goes_back;
 }
 
 /** Without an engagement nothing is known of the AI computer. */
@@ -227,8 +234,7 @@ static void print_lines(const events_summary_t *summary) {
 }
 
 void replay_text_print(const replay_text_t *replay) {
-    print_not_supervised(replay);
-    print_hints(replay);
+    print_hints(replay, print_not_supervised(replay));
     print_head(replay);
     why_text_supervised(replay->why);
     print_not_judged(replay);

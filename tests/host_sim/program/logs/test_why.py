@@ -139,14 +139,14 @@ class FiveLogs(Case):
     def test_a_clock_that_is_set_forward(self):
         log = traffic.log(traffic.frames(2000)) + traffic.log(traffic.frames(2000), base_us=traffic.BASE_US + 60 * S)
         self.assertEqual(self.text(log)[:2], [
-            "  hint      no frame at all from 1.994 s to 60.000 s: was the recording interrupted, or its clock",
+            "hint        no frame at all from 1.994 s to 60.000 s: was the recording interrupted, or its clock",
             "            set?"])
 
     def test_two_vehicles_in_one_log(self):
         frames = traffic.frames(2000) + traffic.frames(2000, interface="can1")
         lines = self.text(traffic.log(sorted(frames, key=lambda frame: frame.t_us)))
         self.assertEqual(lines[:2], [
-            "  hint      the messages come on can0 and can1: a gateway (--ai-if names its AI side), or two",
+            "hint        the messages come on can0 and can1: a gateway (--ai-if names its AI side), or two",
             "            vehicles in one log?"])
 
     def test_a_gateway_recorded_on_both_of_its_sides(self):
@@ -249,9 +249,15 @@ class Text(Case):
     def test_a_night_has_two_dates_and_a_log_two_interfaces(self):
         frames = traffic.frames(2000, ai_interface="can1")
         lines = self.text(traffic.log(frames, base_us=1700006399 * S))
-        self.assertEqual(lines[0], "  hint      commands come on can1, status messages on can0: a gateway? --ai-if can1")
+        self.assertEqual(lines[0], "hint        commands come on can1, status messages on can0: a gateway? --ai-if can1")
         self.assertEqual(lines[1], "my.log: 1.994 s on can0, can1, 2023-11-14 23:59:59.000 to "
                                    "2023-11-15 00:00:00.994")
+
+    def test_a_name_of_more_than_a_line(self):
+        self.write("n" * 180, traffic.log(traffic.frames(2000)))
+        result = self.run_good("replay", "n" * 180, env=dict(os.environ, TZ="UTC"))
+        self.assertEqual(result.stdout.splitlines()[:3], ["n" * 100, "n" * 80 + ":", "            1.994 s on can0, "
+                                                          "2023-11-14 22:13:20.000 to 22:13:21.994"])
 
     def test_what_was_odd_about_the_log(self):
         log = "oops\n" + traffic.log(traffic.frames(2000)) + "(1700000001.000000) can0 0A3#08\n"
