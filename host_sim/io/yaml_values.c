@@ -13,14 +13,19 @@
 
 enum { SHOWN_MAX = 40, HEX = 16, BYTES_MAX = 8 };
 
-const char *yaml_reader_text(const yaml_reader_t *reader, const yaml_node_t *node, const char *what) {
+static const char *text_of(const yaml_reader_t *reader, const yaml_node_t *node, const char *what,
+                           const char *expected) {
     const char *text = yaml_node_text(node);
 
     if ((text == NULL) || (text[0] == '\0')) {
-        (void)yaml_reader_fail(reader, node, "%s: a word or a text is missing", what);
+        (void)yaml_reader_fail(reader, node, "%s: %s is missing", what, expected);
         return NULL;
     }
     return text;
+}
+
+const char *yaml_reader_text(const yaml_reader_t *reader, const yaml_node_t *node, const char *what) {
+    return text_of(reader, node, what, "a word or a text");
 }
 
 /** Whether a text is digits and nothing else. */
@@ -58,7 +63,7 @@ static bool check_limits(const yaml_reader_t *reader, const yaml_node_t *node, c
 
 bool yaml_reader_number(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, int64_t lowest,
                         int64_t highest, int64_t *number) {
-    const char *text = yaml_reader_text(reader, node, what);
+    const char *text = text_of(reader, node, what, "a number");
 
     if (text == NULL) {
         return false;
@@ -71,7 +76,7 @@ bool yaml_reader_number(const yaml_reader_t *reader, const yaml_node_t *node, co
 
 bool yaml_reader_time(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, duration_unit_t unit,
                       int64_t lowest, int64_t highest, int64_t *number) {
-    const char *text = yaml_reader_text(reader, node, what);
+    const char *text = text_of(reader, node, what, "a time");
     char problem[DURATION_PROBLEM_SIZE];
     uint64_t value = 0u;
 
@@ -182,15 +187,17 @@ static bool read_ms(const yaml_reader_t *reader, const yaml_node_t *node, const 
 
 static bool read_both(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, read_one_fn *read,
                       int64_t lowest, int64_t highest, int64_t range[2]) {
-    if (node->type != YAML_SEQUENCE_NODE) {
+    const char *text = yaml_node_text(node);
+    if ((text != NULL) && (text[0] != '\0')) {
         if (!read(reader, node, what, lowest, highest, &range[0])) {
             return false;
         }
         range[1] = range[0];
         return true;
     }
-    if (node->data.sequence.items.top - node->data.sequence.items.start != 2) {
-        return yaml_reader_fail(reader, node, "%s: a number or [lowest, highest]", what);
+    if ((node->type != YAML_SEQUENCE_NODE) || (node->data.sequence.items.top - node->data.sequence.items.start != 2)) {
+        return yaml_reader_fail(reader, node, "%s must be %s or a range, [lowest, highest]", what,
+                                (read == read_ms) ? "a time" : "a number");
     }
     for (int i = 0; i < 2; i++) {
         const yaml_node_t *item = yaml_document_get_node(reader->document, node->data.sequence.items.start[i]);
