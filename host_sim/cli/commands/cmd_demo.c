@@ -131,13 +131,14 @@ static bool find_scenario(const char *name, char path[PATH_SIZE]) {
 
 static status_t print_result(const work_t *work, bool good) {
     const scenario_check_t *check = &work->run.check;
+    const char *space = (work->text_out == stdout) ? "\n" : ""; /* below the timeline */
 
     if (good) {
         const size_t count = check->expectation_count;
-        (void)fprintf(work->text_out, "\nAll %zu expectation%s passed.\n", count, (count == 1u) ? "" : "s");
+        (void)fprintf(work->text_out, "%sAll %zu expectation%s passed.\n", space, count, (count == 1u) ? "" : "s");
         return STATUS_OK;
     }
-    (void)fprintf(work->text_out, "\nExpectations FAILED, %s:\n", work->path);
+    (void)fprintf(work->text_out, "%sExpectations FAILED, %s:\n", space, work->path);
     for (size_t i = 0u; (i < check->failure_count) && (i < SCENARIO_FAILURES_MAX); i++) {
         (void)fprintf(work->text_out, "  %s\n", check->failures[i]);
     }
