@@ -9,6 +9,7 @@
 #include "common/interrupt.h"
 #include "common/report.h"
 #include "logs/log_foreign.h"
+#include "text/text.h"
 
 #ifdef CANDUMP_NO_OPTIONS
 #define CUT_OFF "; the log ends in this line"
@@ -113,9 +114,9 @@ static bool fill(candump_log_t *log) {
 }
 
 static bool report_foreign(const candump_log_t *log, const log_foreign_t *format) {
-    char advice[LOG_FOREIGN_TEXT_SIZE];
-    log_foreign_advice(advice, format, (log->fd == STDIN_FILENO) ? "FILE" : log->name);
-    return report("%s: %s", log->name, advice);
+    text_t advice = {.used = 0u};
+    log_foreign_advice(&advice, format, (log->fd == STDIN_FILENO) ? "FILE" : log->name);
+    return report("%s: %s", log->name, advice.bytes);
 }
 
 /** Whether there are bytes that no text has, before the end of the first line. */
@@ -250,9 +251,9 @@ static bool may_lack_data(const candump_log_t *log, const hal_can_frame_t *frame
  */
 static const char *check_stamp(candump_log_t *log, uint64_t stamp_us) {
     const bool is_first = log->newest_us == UINT64_MAX;
-    const bool is_late = !is_first && (stamp_us > log->newest_us) && (stamp_us - log->newest_us > CANDUMP_GAP_MAX_US);
-    if (!is_late) {
-        log->newest_us = (is_first || (stamp_us > log->newest_us)) ? stamp_us : log->newest_us;
+    const bool is_newer = is_first || (stamp_us > log->newest_us);
+    if (is_first || !is_newer || (stamp_us - log->newest_us <= CANDUMP_GAP_MAX_US)) {
+        log->newest_us = is_newer ? stamp_us : log->newest_us;
         log->late_line = 0u;
         return NULL;
     }
@@ -261,11 +262,11 @@ static const char *check_stamp(candump_log_t *log, uint64_t stamp_us) {
         log->line = log->late_line;
         log->is_cut_off = false;
         log->skip_bad = false;
-        return "the clock was set: from here on, the time stamps are more than 100 days later; cut the log here";
+        return "the clock was set by more than 100 days: cut the log here";
     }
     log->late_us = stamp_us;
     log->late_line = log->line;
-    return "the time stamp is more than 100 days after the previous one; if the clock was set, cut the log here";
+    return "the time stamp jumps by more than 100 days: if the clock was set, cut the log here";
 }
 
 static void leave_out(candump_log_t *log) {

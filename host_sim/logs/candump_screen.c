@@ -111,24 +111,20 @@ static const char *parse_rest(const char *at, const char *end) {
 }
 
 static const char *parse_data(const char *at, const char *end, hal_can_frame_t *frame) {
+    const char *rest = at;
+    if (log_token_is(log_token_next(&rest, end), "remote")) {
+        frame->flags |= HAL_CAN_REMOTE;
+        return log_token_is(log_token_next(&rest, end), "request") ? parse_rest(rest, end) : "the data is not readable";
+    }
     for (uint32_t i = 0u; i < frame->length; i++) {
         const log_token_t token = log_token_next(&at, end);
         uint32_t byte = 0u;
-        if ((i == 0u) && log_token_is(token, "remote")) {
-            frame->flags |= HAL_CAN_REMOTE;
-            return log_token_is(log_token_next(&at, end), "request") ? parse_rest(at, end) : "the data is not readable";
-        }
         if ((token.length != 2u) || !log_token_number(token, HEX, BYTE_MAX, &byte)) {
             return "the data is shorter than its length says";
         }
         if (i < (uint32_t)DATA_MAX) {
             frame->data[i] = (uint8_t)byte;
         }
-    }
-    const char *rest = at;
-    if ((frame->length == 0u) && log_token_is(log_token_next(&rest, end), "remote")) {
-        frame->flags |= HAL_CAN_REMOTE;
-        return log_token_is(log_token_next(&rest, end), "request") ? parse_rest(rest, end) : "the data is not readable";
     }
     return parse_rest(at, end);
 }

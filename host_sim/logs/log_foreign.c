@@ -1,7 +1,6 @@
 #include "logs/log_foreign.h"
 
 #include <stdbool.h>
-#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -27,14 +26,13 @@ typedef struct {
         }                                                                                                              \
     }
 
-void log_foreign_advice(char text[LOG_FOREIGN_TEXT_SIZE], const log_foreign_t *format, const char *path) {
+void log_foreign_advice(text_t *text, const log_foreign_t *format, const char *path) {
     static const size_t path_max = 150u;
     const char *name = (strlen(path) > path_max) ? "FILE" : path;
-    size_t used = (size_t)snprintf(text, LOG_FOREIGN_TEXT_SIZE, "%s; ", format->name);
+    text_add(text, "%s; ", format->name);
     for (const char *at = format->convert; *at != '\0'; at++) {
         const char letter[2] = {*at, '\0'};
-        const int length = snprintf(&text[used], LOG_FOREIGN_TEXT_SIZE - used, "%s", (*at == '@') ? name : letter);
-        used += ((size_t)length < LOG_FOREIGN_TEXT_SIZE - used) ? (size_t)length : 0u;
+        text_add(text, "%s", (*at == '@') ? name : letter);
     }
 }
 

@@ -7,6 +7,8 @@
 
 #include <stddef.h>
 
+#include "text/text.h"
+
 /** More bytes than are needed to tell a format. */
 #define LOG_FOREIGN_BYTES 64u
 
@@ -16,11 +18,8 @@ typedef struct {
     const char *convert; /**< what to do; each @ is the file */
 } log_foreign_t;
 
-/** Room for what log_foreign_advice() writes. */
-#define LOG_FOREIGN_TEXT_SIZE 450u
-
-/** Write what a file is and what to do: "a Vector BLF log; convert it: ...". @param path a name longer than 150 is "FILE" */
-void log_foreign_advice(char text[LOG_FOREIGN_TEXT_SIZE], const log_foreign_t *format, const char *path);
+/** Add what a file is and what to do: "a Vector BLF log; convert it: ...". @param path a name longer than 150 is "FILE" */
+void log_foreign_advice(text_t *text, const log_foreign_t *format, const char *path);
 
 /** Tell a binary format by the first bytes of a file. @return NULL: none that is known */
 const log_foreign_t *log_foreign_binary(const char *bytes, size_t size);
