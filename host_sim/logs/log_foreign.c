@@ -10,7 +10,18 @@
 #define CAN_LOGCONVERT_MDF                                                                                             \
     "convert it: python3 -m can.logconvert @ @.log (python-can[mf4])" /* it finalises a copy, too */
 #define EXPORT "export its CAN frames as a candump log or Vector ASC"
-#define TSHARK "convert it with tshark: docs/host-sim.md has the command"
+/*
+ * b() joins bits, lowest first. Columns 6 to 14 are the class of an error frame, 15 to 21 its second byte; the other
+ * bytes are lost. What tshark takes for another protocol has no data here, and is left out.
+ */
+#define TSHARK                                                                                                         \
+    "convert it: tshark -r @ -T fields -e{frame.time_epoch,can.{id,len,flags.{xtd,rtr},err.{tx_timeout,lostarb,ctrl,"  \
+    "prot,trx,ack,busoff,buserror,restarted,ctrl.{rx_overflow,tx_overflow,rx_warning,tx_warning,rx_passive,"           \
+    "tx_passive,active}}},canfd.flags.{brs,esi},data.data}"                                                            \
+    " | awk -F'\\t' 'function b(n,m){return n>m?0:2*b(n+1,m)+($n~/[1T]/)} "                                            \
+    "$6!=\"\"{printf \"(%.6f) can0 2%07X#00%02X000000000000\\n\",$1,b(6,14),b(15,21);next} "                           \
+    "$3!=\"\"&&(b(5,5)||length($24)==2*$3){printf \"(%.6f) can0 \"(b(4,4)?\"%08X\":\"%03X\")\"%s\\n\",$1,$2,"          \
+    "b(5,5)?\"#R\"$3:($22!=\"\"?\"##\"b(22,23):\"#\")$24}' > @.log"
 
 /** What a file begins with. */
 typedef struct {

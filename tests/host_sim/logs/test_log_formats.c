@@ -309,8 +309,8 @@ void test_other_formats_are_named_with_what_converts_them(void) {
         {"MDF     4.10", 12, "an MDF log", "python3 -m can.logconvert"},
         {"UnFinMF 4.10", 12, "an MDF log that was not finalised", "python3 -m can.logconvert"},
         {"SQLite format 3\0", 16, "an SQLite log", "python3 -m can.logconvert"},
-        {"\xD4\xC3\xB2\xA1\x02\0\x04\0", 8, "a pcap capture", "tshark: docs/host-sim.md has"},
-        {"\x0A\x0D\x0D\x0A\x1C\0\0\0", 8, "a pcapng capture", "tshark: docs/host-sim.md has"},
+        {"\xD4\xC3\xB2\xA1\x02\0\x04\0", 8, "a pcap capture", "tshark -r "},
+        {"\x0A\x0D\x0D\x0A\x1C\0\0\0", 8, "a pcapng capture", "tshark -r "},
         {"\xFD"
          "7zXZ\0",
          6, "compressed with xz", "xz -dc "},

@@ -3,8 +3,6 @@ that it was made from."""
 import gzip
 import json
 import os
-import pathlib
-import re
 import resource
 import subprocess
 
@@ -76,7 +74,7 @@ class OtherPrograms(Case):
 
 
 class OfTshark(Case):
-    """The command for captures in docs/host-sim.md, run in bash with a stand-in for tshark that prints columns as tshark does."""
+    """The command for captures, run in bash with a stand-in for tshark that prints columns as tshark does."""
     BASE = {"frame.time_epoch": "1700000001.123456000"}
     ERROR = dict.fromkeys(("tx_timeout", "lostarb", "ctrl", "prot", "trx", "ack", "busoff", "buserror", "restarted"), 0)
 
@@ -97,9 +95,10 @@ class OfTshark(Case):
                               "for frame in json.load(open('frames.json')):\n"
                               "    print(*(frame.get(word.removeprefix('-e'), '') for word in sys.argv[5:]), sep='\\t')\n")
         stand_in.chmod(0o755)
-        page = (pathlib.Path(__file__).parents[4] / "docs" / "host-sim.md").read_text(encoding="utf-8")
-        command = re.search(r"```sh not-run-here\n(tshark .*?)```", page, re.DOTALL)[1]
-        subprocess.run(["bash", "-c", command], cwd=self.folder, check=True,
+        self.write("my.pcap", b"\xD4\xC3\xB2\xA1\x02\0\x04\0")
+        refused = self.run_program("replay", "my.pcap")
+        self.assert_refused(refused, "my.pcap: a pcap capture; convert it: ")
+        subprocess.run(["bash", "-c", refused.stderr.split("convert it: ")[1]], cwd=self.folder, check=True,
                        env={**os.environ, "PATH": f"{self.folder}/bin:{os.environ['PATH']}"})
         return [line.removeprefix("(1700000001.123456) can0 ") for line in (self.folder / "my.pcap.log").read_text(encoding="ascii").splitlines()]
 
