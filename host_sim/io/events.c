@@ -107,7 +107,7 @@ void events_summarise(const session_t *session, events_summary_t *summary) {
     (void)memset(summary, 0, sizeof *summary);
     summary->t_ms = session->t_ms;
     summary->supervised_ms = session->supervised_ms;
-    summary->counters = *agv_supervisor_counters(&session->supervisor);
+    summary->counters = session_counters(session);
     summary->final_state = agv_supervisor_state(&session->supervisor);
     summary->first_reason = agv_supervisor_first_reason(&session->supervisor);
 }

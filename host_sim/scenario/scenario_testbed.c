@@ -226,6 +226,7 @@ static void restart(scenario_testbed_t *testbed, hal_reset_cause_t cause, uint32
     if (off_ms == 0u) {
         start_supervisor(testbed);
     } else {
+        session_stop(&testbed->session, testbed->t_ms);
         power_supervisor(testbed, false);
     }
 }

@@ -81,7 +81,7 @@ static void tell_left_out(session_t *session) {
 static void notify_recorded(session_t *session, bool with_output) {
     uint32_t end = agv_recorder_next_sequence(&session->recorder);
     for (; session->next != end; session->next++) {
-        session_event_t event = {.t_ms = session->t_ms, .is_led = false};
+        session_event_t event = {.t_ms = session->t_ms, .stopped_ms = session->stopped_ms};
         if (agv_recorder_get(&session->recorder, session->next, &event.recorded) &&
             (with_output || (event.recorded.kind != (uint8_t)AGV_EVENT_OUTPUT))) {
             notify(session, &event);
@@ -112,17 +112,6 @@ static uint32_t first_of_run(const agv_recorder_t *recorder) {
     return first;
 }
 
-void session_start(session_t *session, const agv_config_t *config, uint64_t t_ms, uint32_t clock_ms) {
-    session->t_ms = t_ms;
-    session->counted_ms = t_ms;
-    agv_supervisor_start(&session->supervisor, &session->ports, config, clock_ms);
-    session->next = first_of_run(&session->recorder);
-    (void)memset(&session->faults, 0, sizeof session->faults);
-    notify_recorded(session, false);
-    notify_output(session, agv_supervisor_output_closed(&session->supervisor));
-    notify_led(session);
-}
-
 /** A call begins: up to here the state was as it is. */
 static void advance(session_t *session, uint64_t t_ms) {
     const bool supervised = agv_supervisor_state(&session->supervisor) != AGV_STATE_INIT;
@@ -131,6 +120,45 @@ static void advance(session_t *session, uint64_t t_ms) {
         session->counted_ms = t_ms;
     }
     session->t_ms = t_ms;
+}
+
+agv_counters_t session_counters(const session_t *session) {
+    const agv_counters_t *last = agv_supervisor_counters(&session->supervisor);
+    agv_counters_t sum = session->before;
+    for (size_t i = 0u; i < (size_t)AGV_REJECTED_KINDS; i++) {
+        sum.rejected[i] += last->rejected[i];
+    }
+    sum.received += last->received;
+    sum.dropped += last->dropped;
+    sum.sent += last->sent;
+    sum.shadowed += last->shadowed;
+    sum.gate_refused += last->gate_refused;
+    sum.skipped_slots += last->skipped_slots;
+    sum.limited += last->limited;
+    sum.warnings += last->warnings;
+    return sum;
+}
+
+void session_stop(session_t *session, uint64_t t_ms) {
+    if (session->runs) {
+        advance(session, t_ms);
+        session->stopped_ms = t_ms;
+        session->runs = false;
+    }
+}
+
+void session_start(session_t *session, const agv_config_t *config, uint64_t t_ms, uint32_t clock_ms) {
+    session_stop(session, t_ms);
+    session->before = session_counters(session);
+    session->runs = true;
+    session->t_ms = t_ms;
+    session->counted_ms = t_ms;
+    agv_supervisor_start(&session->supervisor, &session->ports, config, clock_ms);
+    session->next = first_of_run(&session->recorder);
+    (void)memset(&session->faults, 0, sizeof session->faults);
+    notify_recorded(session, false);
+    notify_output(session, agv_supervisor_output_closed(&session->supervisor));
+    notify_led(session);
 }
 
 void session_frame(session_t *session, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_ms) {

@@ -24,6 +24,7 @@
 /** An event of the flight recorder, of a fault that it left out, or a change of the LED code. */
 typedef struct {
     uint64_t t_ms;        /**< since the start of the run */
+    uint64_t stopped_ms;  /**< when the supervisor had no power any more before it was started last */
     bool is_led;          /**< `led_code` is the news; else `recorded` */
     int8_t led_code;      /**< as agv_supervisor_led_code() */
     bool is_left_out;     /**< of a fault that changes too often: the recorder did not keep it */
@@ -50,7 +51,10 @@ typedef struct {
     agv_ports_t ports;
     uint64_t t_ms;          /**< time of the last call, since the start of the run */
     uint64_t counted_ms;    /**< up to here supervised_ms is counted */
-    uint64_t supervised_ms; /**< time outside INIT */
+    uint64_t supervised_ms; /**< time outside INIT, with power */
+    uint64_t stopped_ms;    /**< when it was stopped last */
+    bool runs;              /**< it was started and not stopped */
+    agv_counters_t before;  /**< the counters of the supervisor's earlier starts, in sum */
     uint32_t next;          /**< sequence number of the next event to report */
     int8_t led_code;        /**< as last reported */
     session_faults_t faults;
@@ -75,6 +79,12 @@ bool session_observe(session_t *session, session_observer_fn *fn, void *ctx);
  * @param clock_ms the supervisor's clock, any value
  */
 void session_start(session_t *session, const agv_config_t *config, uint64_t t_ms, uint32_t clock_ms);
+
+/** The processor has no power from now on, until the next session_start. */
+void session_stop(session_t *session, uint64_t t_ms);
+
+/** The counters of the whole run: of all starts of the supervisor. */
+agv_counters_t session_counters(const session_t *session);
 
 /** Hand over a frame that was received; its time_ms is the supervisor's clock. */
 void session_frame(session_t *session, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_ms);

@@ -33,6 +33,7 @@ struct traffic {
     traffic_totals_t totals;
     engagement_t engagement;
     uint64_t engaged_since_us;
+    uint64_t started_us; /**< when somebody began to listen */
 };
 
 traffic_t *traffic_new(const agv_config_t *config) {
@@ -237,10 +238,12 @@ static void take_data(traffic_t *traffic, traffic_id_t *entry, const hal_can_fra
         entry->malformed++;
         return;
     }
-    if (entry->count > 0u) {
+    if (entry->count == 0u) {
+        entry->first_us = t_us;
+    } else if (entry->last_us >= traffic->started_us) {
         gaps_add(&entry->gaps, entry->last_us, t_us - entry->last_us);
     } else {
-        entry->first_us = t_us;
+        /* nobody listened all the time */
     }
     entry->count++;
     entry->last_us = t_us;
@@ -268,6 +271,15 @@ void traffic_frame(traffic_t *traffic, hal_can_side_t side, const hal_can_frame_
         return;
     }
     take_data(traffic, entry, frame, t_us);
+}
+
+void traffic_start(traffic_t *traffic, uint64_t t_us) {
+    traffic->started_us = t_us;
+    for (size_t i = 0u; i < traffic->all_count; i++) {
+        if (traffic->all[i]->watch != NULL) {
+            traffic->all[i]->watch->is_running = false;
+        }
+    }
 }
 
 static int compare(const void *left, const void *right) {

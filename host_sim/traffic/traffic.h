@@ -81,6 +81,9 @@ traffic_t *traffic_new(const agv_config_t *config);
 /** Take a frame. Error frames are counted only. */
 void traffic_frame(traffic_t *traffic, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us);
 
+/** The supervisor was started: a gap that began before is none, as nobody listened. */
+void traffic_start(traffic_t *traffic, uint64_t t_us);
+
 /** The run is over. Call it once, after the last frame. */
 void traffic_end(traffic_t *traffic, uint64_t t_us);
 

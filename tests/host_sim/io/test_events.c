@@ -168,6 +168,19 @@ void test_a_session_that_is_started_again_tells_of_the_new_run_only(void) {
         lines());
 }
 
+void test_the_summary_is_of_all_starts(void) {
+    const hal_can_frame_t frame = {.id = 0x123, .length = 1};
+    events_summary_t summary;
+    start(0, 0);
+    session_frame(session, HAL_CAN_VEHICLE, &frame, 10);
+    session_stop(session, 20);
+    start(70, 70);
+    session_frame(session, HAL_CAN_VEHICLE, &frame, 80);
+    session_frame(session, HAL_CAN_VEHICLE, &frame, 90);
+    events_summarise(session, &summary);
+    TEST_ASSERT_EQUAL_UINT32(3, summary.counters.received);
+}
+
 void test_time_goes_on_over_the_wrap_of_the_clock(void) {
     TEST_ASSERT_TRUE(session_observe(session, events_write, output));
     start(0, UINT32_MAX - 9999u);

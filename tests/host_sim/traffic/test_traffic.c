@@ -68,6 +68,19 @@ void test_a_late_message_and_one_that_ends(void) {
     TEST_ASSERT_EQUAL_UINT64(0, traffic_message(traffic, AGV_MSG_GEAR_STATUS)->watch->late); /* 125 ms */
 }
 
+void test_a_gap_over_a_start_of_the_supervisor_is_none(void) {
+    feed(0, 0x050, 0);
+    feed(10 * MS, 0x050, 0);
+    traffic_start(traffic, 500 * MS);
+    feed(505 * MS, 0x050, 0);
+    feed(515 * MS, 0x050, 0);
+    traffic_end(traffic, 520 * MS);
+    const traffic_id_t *entry = traffic_message(traffic, AGV_MSG_THROTTLE_STATUS);
+    TEST_ASSERT_EQUAL_UINT64(10 * MS, entry->gaps.longest_us);
+    TEST_ASSERT_EQUAL_UINT64(10 * MS, entry->watch->gaps.longest_us);
+    TEST_ASSERT_EQUAL_UINT64(0, entry->watch->late);
+}
+
 /* 363h: autopilot at 100 ms, manual from 200 ms on; an engagement ends with the third frame without autopilot. */
 static void feed_modes(uint64_t until_ms) {
     for (uint64_t ms = 0; ms <= until_ms; ms += 10) {
