@@ -1,5 +1,7 @@
 #include "common/message_facts.h"
 
+#include "hal/can.h"
+
 enum { NO_COUNTER = MESSAGE_NO_COUNTER, STEP_MAX = 3, STEPS_AFTER_WRONG = 2 };
 
 static const struct {
@@ -30,7 +32,7 @@ uint16_t message_deadline_setting(uint32_t message) {
     return facts[message].deadline;
 }
 
-static bool has_to_increment(const agv_config_t *config, uint32_t message) {
+bool message_has_to_increment(const agv_config_t *config, uint32_t message) {
     const uint16_t choices[] = {[MESSAGE_FROM_AI] = config->ai_counter,
                                 [MESSAGE_FROM_VCU] = config->vcu_counter,
                                 [MESSAGE_FROM_EPS] = config->eps_counter};
@@ -57,5 +59,18 @@ bool message_beats(message_beat_t *beat, const agv_config_t *config, uint32_t me
     if (is_first) {
         return true;
     }
-    return has_to_increment(config, message) ? increments(beat, step) : (step != 0u);
+    return message_has_to_increment(config, message) ? increments(beat, step) : (step != 0u);
+}
+
+const char *message_form(uint32_t flags) {
+    if ((flags & HAL_CAN_ERROR) != 0u) {
+        return "error frame";
+    }
+    if ((flags & HAL_CAN_REMOTE) != 0u) {
+        return "remote frame";
+    }
+    if ((flags & HAL_CAN_FD) != 0u) {
+        return "CAN FD frame";
+    }
+    return (flags != 0u) ? "extended frame" : "";
 }

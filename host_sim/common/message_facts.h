@@ -26,6 +26,9 @@ uint8_t message_counter_at(uint32_t message);
 /** The setting (AGV_SETTING_*) that limits its silence. */
 uint16_t message_deadline_setting(uint32_t message);
 
+/** Whether the alive counter of a message has to step by 1 to 3; else any change is one. */
+bool message_has_to_increment(const agv_config_t *config, uint32_t message);
+
 /** The alive counter of a message, as the supervisor follows it (SUP-2). Begin with all zero. */
 typedef struct {
     uint8_t value;        /**< of the last frame */
@@ -35,5 +38,8 @@ typedef struct {
 
 /** Take a frame's counter. @return whether it counts as changed; true for the first frame */
 bool message_beats(message_beat_t *beat, const agv_config_t *config, uint32_t message, uint8_t value);
+
+/** What a frame with flags (HAL_CAN_*) is: "extended frame". "" without flags. */
+const char *message_form(uint32_t flags);
 
 #endif

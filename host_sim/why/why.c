@@ -55,11 +55,8 @@ void why_free(why_t *why) {
     }
 }
 
-/** The message of a frame that the supervisor accepts; AGV_MSG_NONE: it accepts none, or another sender sent it. */
-static agv_message_t accepted(const why_t *why, hal_can_side_t side, const hal_can_frame_t *frame) {
-    if ((frame->flags != 0u) || (frame->length != AGV_DLC)) {
-        return AGV_MSG_NONE;
-    }
+/** The message of a frame's identifier; AGV_MSG_NONE: it is none, or another sender sent it. */
+static agv_message_t message_of(const why_t *why, hal_can_side_t side, const hal_can_frame_t *frame) {
     const agv_message_t message = (agv_message_t)agv_ids_find(&why->ids, frame->id);
     const hal_can_side_t from = (why_is_command(message) && why->is_gateway) ? HAL_CAN_AI : HAL_CAN_VEHICLE;
     return (side == from) ? message : AGV_MSG_NONE;
@@ -70,6 +67,16 @@ const why_evidence_t *why_history(const why_message_t *message, uint32_t back) {
         return NULL;
     }
     return &message->history[(message->count - 1u - back) % (uint32_t)WHY_HISTORY];
+}
+
+const why_evidence_t *why_before(const why_message_t *message, uint64_t t_us) {
+    uint32_t back = 0u;
+    const why_evidence_t *frame = why_history(message, back);
+    while ((frame != NULL) && (frame->t_us >= t_us)) {
+        back++;
+        frame = why_history(message, back);
+    }
+    return frame;
 }
 
 /** The trip that is not over; NULL: none. */
@@ -85,7 +92,9 @@ static void follow_trip(why_t *why, agv_message_t message, const why_evidence_t 
         return;
     }
     const bool ends_silence = (trip->kind == WHY_SILENCE) && (trip->message == message) && !trip->from_earlier_run;
-    if (ends_silence && (trip->next_us == WHY_NEVER)) {
+    trip->parked = trip->parked || (why->facts.gear == (uint32_t)AGV_GEAR_P);
+    trip->disengaged = trip->disengaged || !why->engagement.engaged;
+    if (ends_silence && (trip->next_us == WHY_NEVER) && !why_was_withheld(trip)) {
         trip->next_us = t_us;
         why_show(trip, frame);
     }
@@ -96,14 +105,16 @@ static void follow_trip(why_t *why, agv_message_t message, const why_evidence_t 
 
 void why_frame(why_t *why, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
     const why_evidence_t evidence = evidence_of(side, frame, t_us);
-    const agv_message_t message = accepted(why, side, frame);
+    const agv_message_t message = message_of(why, side, frame);
     why->now_us = t_us;
     why_init_check(why, t_us);
     if ((frame->flags & HAL_CAN_ERROR) != 0u) {
         why->error = evidence;
         return;
     }
-    if (message == AGV_MSG_NONE) {
+    const bool whole = (frame->flags == 0u) && (frame->length == AGV_DLC);
+    if ((message == AGV_MSG_NONE) || !whole) {
+        why_life_refuse(why, message, &evidence);
         why_intruder_frame(why, &evidence);
         return;
     }
@@ -230,6 +241,23 @@ static void leave_state(why_t *why, uint64_t t_us) {
     why->state_since_us = t_us;
 }
 
+static void end_fault(why_t *why, agv_fault_t fault, uint64_t t_us) {
+    why_fault_t *entry = &why->faults[fault];
+    if (entry->active) {
+        entry->active = false;
+        entry->active_us += t_us - why->fault_since_us[fault];
+    }
+}
+
+/** The supervisor had no power from here on until it was started again. */
+static void stop(why_t *why, uint64_t stopped_us) {
+    leave_state(why, stopped_us);
+    for (size_t i = 0u; i < why->fault_count; i++) {
+        end_fault(why, (agv_fault_t)why->fault_order[i], stopped_us);
+    }
+    why->state = 0u;
+}
+
 static void on_state(why_t *why, const agv_event_t *event, uint64_t t_us) {
     leave_state(why, t_us);
     if (event->a == 0u) {
@@ -290,14 +318,6 @@ static void raise(why_t *why, agv_fault_t fault, agv_fault_class_t fault_class, 
     }
 }
 
-static void end_fault(why_t *why, agv_fault_t fault, uint64_t t_us) {
-    why_fault_t *entry = &why->faults[fault];
-    if (entry->active) {
-        entry->active = false;
-        entry->active_us += t_us - why->fault_since_us[fault];
-    }
-}
-
 static void on_fault(why_t *why, const agv_event_t *event, uint64_t t_us) {
     if (event->a >= (uint8_t)AGV_FAULT_COUNT) {
         return;
@@ -318,6 +338,9 @@ void why_event(void *ctx, const session_event_t *event) {
     why->snapshot = why->is_recorder ? &event->recorded : NULL;
     switch ((agv_event_kind_t)event->recorded.kind) {
     case AGV_EVENT_STATE:
+        if ((event->recorded.a == 0u) && (event->stopped_ms * US_PER_MS >= why->state_since_us)) {
+            stop(why, event->stopped_ms * US_PER_MS);
+        }
         on_state(why, &event->recorded, t_us);
         break;
     case AGV_EVENT_FAULT:

@@ -33,6 +33,12 @@ typedef struct {
     hal_can_frame_t frame;
 } why_evidence_t;
 
+/** Frames with the identifier of a message that did not count as one. */
+typedef struct {
+    uint32_t count;
+    why_evidence_t first;
+} why_refused_t;
+
 /** A trip, or a trip fault of the vehicle's behaviour while it was tripped (`kind` is WHY_VEHICLE). */
 typedef struct {
     uint64_t t_us;
@@ -47,6 +53,13 @@ typedef struct {
     bool at_the_latest;    /**< it began at cause_us or before */
     bool was_heard;        /**< silence: it had come before; last_good_us WHY_NEVER: when is not known */
     uint64_t next_us;      /**< silence: the frame that ended it; WHY_NEVER */
+    why_refused_t refused; /**< silence: what came all the same, until the trip */
+    bool wrong_steps;      /**< stuck: the counter changed, but not by the steps that it has to make */
+    bool is_mixed;         /**< score: the frames did not all report the same mode */
+    uint32_t bad_frames;   /**< score: so many; 0: not known */
+    why_evidence_t bad;    /**< the frame at cause_us; t_us WHY_NEVER: none */
+    bool parked;           /**< since the trip, 0A3h has reported P */
+    bool disengaged;       /**< since the trip, 363h has reported that the autopilot is off */
     int64_t limit;         /**< that was exceeded; WHY_NO_LIMIT */
     const char *unit;      /**< of the limit: "ms", "frames", "ddeg", "counts"; NULL: no limit */
     size_t evidence_count;
@@ -56,6 +69,12 @@ typedef struct {
     uint64_t stopped_us;                       /**< both wheels stand */
     bool from_recording;                       /**< a consequence of the fact that a recording cannot obey */
 } why_trip_t;
+
+/** Whether a gateway did not pass on what came. */
+static inline bool why_was_withheld(const why_trip_t *trip) {
+    const hal_can_frame_t *frame = &trip->refused.first.frame;
+    return (trip->refused.count > 0u) && (frame->flags == 0u) && (frame->length == AGV_DLC);
+}
 
 /** A fault that was raised. */
 typedef struct {
@@ -69,6 +88,11 @@ typedef struct {
     bool in_init;        /**< in INIT only, where nothing but an unresettable fault trips */
     bool from_recording; /**< as in why_trip_t, each time */
 } why_fault_t;
+
+/** Whether a fault is one that trips, and did not, because it occurred in INIT. */
+static inline bool why_did_not_trip(const why_fault_t *fault) {
+    return fault->in_init && (fault->fault_class == AGV_CLASS_TRIP);
+}
 
 /** The five states, in the order of a run. */
 enum { WHY_INIT, WHY_STANDBY, WHY_ACTIVE, WHY_TRIPPED, WHY_SAFE, WHY_STATES };
@@ -116,6 +140,12 @@ bool why_was_engaged(const why_t *why);
 /** Whether the first 363h reported autopilot. */
 bool why_began_in_autopilot(const why_t *why);
 
+/** Whether it was in INIT for longer than a start takes: to the end, or a part of the run was not supervised. */
+bool why_left_init_late(const why_t *why);
+
+/** What of the confirmation of a trip did not come, if not all of it did: "P", "autopilot off", "P and autopilot off". */
+const char *why_unconfirmed(const why_trip_t *trip);
+
 /** AGV_MISSING_* bits: what kept it in INIT, until it left it or until the end. */
 uint16_t why_missing(const why_t *why);
 /** @} */
@@ -124,7 +154,8 @@ uint16_t why_missing(const why_t *why);
 typedef struct {
     const char *log;                       /**< name of the log, of the interface or of the scenario; NULL: null */
     const char *interfaces[HAL_CAN_SIDES]; /**< names of the sides; NULL: none */
-    json_t *messages;                      /**< the array of survey; the reference is taken; NULL: an empty one */
+    bool goes_back;   /**< the time stamps of the log go back so far that they may hide a silence */
+    json_t *messages; /**< the array of survey; the reference is taken; NULL: an empty one */
 } why_names_t;
 
 /** All of it as a JSON object. @return NULL: no memory */

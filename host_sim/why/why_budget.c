@@ -319,7 +319,7 @@ static void evaluate(why_t *why, agv_message_t message, const why_evidence_t *fr
         const bool bad = rows[i].is_bad(why);
         if (bad && !tracker->bad && (tracker->value == 0u)) {
             const agv_message_t shown = why_row(rows[i].fault)->message;
-            const why_evidence_t *before = why_history(&why->messages[shown], (message == shown) ? 1u : 0u);
+            const why_evidence_t *before = why_before(&why->messages[shown], frame->t_us);
             tracker->good = ((before != NULL) && tracker->is_comparable) ? *before : why_no_evidence();
             tracker->first = *frame;
             tracker->since_us = frame->t_us;

@@ -1,5 +1,5 @@
 /* The cause of a trip: what told, since when, and the frames that show it. */
-#include <stdlib.h>
+#include <string.h>
 
 #include "agv/codec.h"
 #include "text/units.h"
@@ -7,29 +7,32 @@
 
 enum { RECENT_FRAMES = 6, ERROR_FRAME_US = 20000 };
 
+/** Two frames with one stamp are the same if their bytes are. */
+static bool is_same(const why_evidence_t *one, const why_evidence_t *other) {
+    return (one->t_us == other->t_us) && (one->frame.id == other->frame.id) &&
+           (memcmp(one->frame.data, other->frame.data, sizeof one->frame.data) == 0);
+}
+
 void why_show(why_trip_t *trip, const why_evidence_t *evidence) {
     if ((evidence == NULL) || (evidence->t_us == WHY_NEVER) || (trip->evidence_count == (size_t)WHY_EVIDENCE_MAX)) {
         return;
     }
+    size_t at = 0u;
     for (size_t i = 0u; i < trip->evidence_count; i++) {
-        if ((trip->evidence[i].t_us == evidence->t_us) && (trip->evidence[i].frame.id == evidence->frame.id)) {
+        if (is_same(&trip->evidence[i], evidence)) {
             return;
         }
+        at = (trip->evidence[i].t_us <= evidence->t_us) ? i + 1u : at;
     }
-    trip->evidence[trip->evidence_count] = *evidence;
+    memmove(&trip->evidence[at + 1u], &trip->evidence[at], (trip->evidence_count - at) * sizeof trip->evidence[0]);
+    trip->evidence[at] = *evidence;
     trip->evidence_count++;
 }
 
 static void show_recent(const why_t *why, why_trip_t *trip, agv_message_t message, uint32_t count) {
-    for (uint32_t back = 0u; back < count; back++) {
-        why_show(trip, why_history(&why->messages[message], back));
+    for (uint32_t back = count; back > 0u; back--) {
+        why_show(trip, why_history(&why->messages[message], back - 1u));
     }
-}
-
-static int by_time(const void *one, const void *other) {
-    const why_evidence_t *a = one;
-    const why_evidence_t *b = other;
-    return (a->t_us > b->t_us) - (a->t_us < b->t_us);
 }
 
 static void set_limit(const why_t *why, why_trip_t *trip, uint16_t setting, const char *unit) {
@@ -50,6 +53,7 @@ static void set_message(const why_t *why, why_trip_t *trip, agv_message_t messag
 static void set_frame(why_trip_t *trip, const why_evidence_t *frame) {
     if (frame->t_us != WHY_NEVER) {
         trip->cause_us = frame->t_us;
+        trip->bad = *frame;
         why_show(trip, frame);
     }
 }
@@ -75,6 +79,10 @@ static void explain_silence(const why_t *why, why_trip_t *trip) {
         trip->last_good_us = message->beat_us;
         trip->cause_us = message->beat_us + cycle_us;
     }
+    trip->refused = message->refused;
+    if (trip->refused.count > 0u) {
+        why_show(trip, &message->refused.first);
+    }
     if (why_is_command(trip->message) && (engaged_us != WHY_NEVER) && (trip->cause_us < engaged_us)) {
         trip->cause_us = engaged_us;
         trip->from_engagement = true;
@@ -88,22 +96,38 @@ static void explain_silence(const why_t *why, why_trip_t *trip) {
 static void explain_stuck(const why_t *why, why_trip_t *trip) {
     const why_message_t *message = &why->messages[trip->message];
     trip->last_good_us = message->beat_us;
-    set_frame(trip, &message->first_repeat);
-    why_show(trip, &message->beat);
+    trip->wrong_steps = message->steps;
     show_recent(why, trip, trip->message, RECENT_FRAMES);
+    why_show(trip, &message->beat);
+    set_frame(trip, &message->first_repeat);
+}
+
+/** It counts while engaged only: a bit that was set before, from the 363h of the engagement on. */
+static void begin_with_engagement(const why_t *why, why_trip_t *trip) {
+    const why_engagement_t *engagement = &why->engagement;
+    const why_evidence_t *frame = &engagement->frames[(engagement->count - 1u) % (uint32_t)WHY_ENGAGEMENTS];
+    if ((trip->reason == AGV_FAULT_VCU_AI_CAN_LOST) && (engagement->count > 0u) && (trip->cause_us < frame->t_us)) {
+        set_frame(trip, frame);
+    }
 }
 
 static void explain_tracked(const why_t *why, why_trip_t *trip) {
     const why_tracker_t *tracker = why_tracker(why, trip->reason);
     const agv_message_t other = why_compared_with(trip->reason);
+    show_recent(why, trip, trip->message, RECENT_FRAMES);
     if (tracker != NULL) {
         trip->cause_us = tracker->began_us;
         trip->last_good_us = tracker->good.t_us;
         trip->from_engagement = tracker->is_old;
+        trip->bad_frames = tracker->bad_frames;
+        trip->is_mixed = tracker->is_mixed;
         why_show(trip, &tracker->good);
         why_show(trip, &tracker->first);
+        if (tracker->first.t_us == tracker->began_us) {
+            trip->bad = tracker->first;
+        }
+        begin_with_engagement(why, trip);
     }
-    show_recent(why, trip, trip->message, RECENT_FRAMES);
     if (other != AGV_MSG_NONE) {
         show_recent(why, trip, other, 2u);
     }
@@ -145,7 +169,7 @@ void why_value_limit(why_trip_t *trip) {
         trip->limit = (int64_t)AGV_THROTTLE_MAX_COUNTS;
         trip->unit = "counts";
     } else if (trip->message == AGV_MSG_STEERING_COMMAND) {
-        trip->limit = AGV_ANGLE_RAW_MAX;
+        trip->limit = (int64_t)AGV_ANGLE_RAW_MAX / 2; /* on the wire it begins at the lowest one */
         trip->unit = "ddeg";
     } else {
         /* a gear has none */
@@ -187,6 +211,7 @@ static void explain_too_fast(const why_t *why, why_trip_t *trip) {
     if (score->value != 0u) {
         trip->cause_us = score->began_us;
         trip->last_good_us = score->good.t_us;
+        trip->bad_frames = score->bad_frames;
         why_show(trip, &score->good);
         why_show(trip, &score->first);
     }
@@ -262,6 +287,7 @@ void why_cause(const why_t *why, why_trip_t *trip) {
     trip->cause_us = trip->t_us;
     trip->last_good_us = WHY_NEVER;
     trip->next_us = WHY_NEVER;
+    trip->bad = why_no_evidence();
     set_message(why, trip, row->message);
     if (trip->from_earlier_run) {
         trip->cause_us = WHY_NEVER;
@@ -274,5 +300,4 @@ void why_cause(const why_t *why, why_trip_t *trip) {
     } else {
         explain[row->kind](why, trip);
     }
-    qsort(trip->evidence, trip->evidence_count, sizeof trip->evidence[0], by_time);
 }

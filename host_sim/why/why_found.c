@@ -1,4 +1,5 @@
 /* What was found, for others to read. */
+#include "text/units.h"
 #include "why/why_internal.h"
 
 size_t why_trip_count(const why_t *why) {
@@ -35,6 +36,18 @@ bool why_was_engaged(const why_t *why) {
 
 bool why_began_in_autopilot(const why_t *why) {
     return why->began_in_autopilot;
+}
+
+bool why_left_init_late(const why_t *why) {
+    const uint64_t normal_us = ((uint64_t)why->config.init_hold_ms + (uint64_t)MS_PER_S) * US_PER_MS;
+    return (why_supervised_us(why) == 0u) || (why->state_us[WHY_INIT] > normal_us);
+}
+
+const char *why_unconfirmed(const why_trip_t *trip) {
+    if (trip->parked == trip->disengaged) {
+        return "P and autopilot off";
+    }
+    return trip->parked ? "autopilot off" : "P";
 }
 
 uint16_t why_missing(const why_t *why) {

@@ -21,10 +21,13 @@ typedef struct {
     uint32_t count;                      /**< of all frames */
     uint64_t last_us;                    /**< of the last one; WHY_NEVER */
     uint64_t beat_us;                    /**< of the last one that restarted the deadline; WHY_NEVER */
+    uint64_t usual_us;                   /**< the time from one of these to the next, as it mostly is; 0: not known */
     message_beat_t counter;              /**< its alive counter */
-    bool repeats;                        /**< since `first_repeat` its counter did not change */
+    bool repeats;                        /**< since `first_repeat` its counter did not change as it has to */
+    bool steps;                          /**< since then it did change, but by a wrong step */
     why_evidence_t beat;                 /**< the frame of beat_us */
     why_evidence_t first_repeat;
+    why_refused_t refused; /**< since beat_us */
 } why_message_t;
 
 /** What counts bad frames, or the time with a bad condition. */
@@ -34,6 +37,8 @@ typedef struct {
     uint64_t since_us; /**< budget: counted up to here */
     uint64_t bad_since_us;
     uint64_t began_us;    /**< of what is counted; valid while value is not 0 */
+    uint32_t bad_frames;  /**< score: that were counted since */
+    bool is_mixed;        /**< score: they did not all report the same mode */
     bool is_old;          /**< score: it was bad before that already, when it did not count */
     bool is_comparable;   /**< budget: there was something to compare with at the last frame */
     why_evidence_t good;  /**< last frame before the first bad one; t_us WHY_NEVER: none */
@@ -130,6 +135,9 @@ struct why {
     size_t fault_count;
 };
 
+/** What a message does whose alive counter has to increment, and does not. */
+#define WHY_WRONG_STEPS "stepped its alive counter otherwise than by 1 to 3"
+
 /** Whether the AI computer sends it. */
 static inline bool why_is_command(agv_message_t message) {
     return (uint32_t)message < AGV_COMMAND_COUNT;
@@ -138,12 +146,17 @@ static inline bool why_is_command(agv_message_t message) {
 /** The last frames of a message. @param back 0 = the last one @return NULL: there are not so many */
 const why_evidence_t *why_history(const why_message_t *message, uint32_t back);
 
+/** The last frame of a message before a time: of frames with one stamp, none. @return NULL: none is known */
+const why_evidence_t *why_before(const why_message_t *message, uint64_t t_us);
+
 /** No evidence. */
 why_evidence_t why_no_evidence(void);
 
 /** @name Arrival and alive counters (why_life.c). @{ */
 void why_life_start(why_t *why);
 void why_life_frame(why_t *why, agv_message_t message, const why_evidence_t *frame);
+/** Count a frame of a message that does not restart its deadline. */
+void why_life_refuse(why_t *why, agv_message_t message, const why_evidence_t *frame);
 /** @} */
 
 /** @name Frames that nobody but another sender sends (why_intruder.c). @{ */

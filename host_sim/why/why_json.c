@@ -61,10 +61,17 @@ static json_t *trip_of(const why_trip_t *trip, const why_names_t *names) {
     return object;
 }
 
-/** The words of what kept it in INIT, if it never left it. */
-static json_t *not_supervised(const why_t *why) {
+/** The words of what kept it in INIT to the end or for long, and of what else was not supervised. */
+static json_t *not_supervised(const why_t *why, const why_names_t *names) {
     json_t *words = json_array();
-    const uint16_t missing = (why_supervised_us(why) == 0u) ? why_missing(why) : 0u;
+    const bool is_late = why_left_init_late(why);
+    const uint16_t missing = is_late ? why_missing(why) : 0u;
+    if (is_late && (missing == 0u)) {
+        json_add(words, json_string("init"));
+    }
+    if (names->goes_back) {
+        json_add(words, json_string("time_stamps"));
+    }
     for (uint8_t bit = 0u; agv_missing_name(bit) != NULL; bit++) {
         if (((missing >> bit) & 1u) != 0u) {
             json_add(words, json_string(agv_missing_name(bit)));
@@ -81,7 +88,7 @@ json_t *why_json(const why_t *why, const why_names_t *names) {
     }
     json_put(object, "log", json_text(names->log));
     json_put(object, "supervised_ms", time_or_null(why_supervised_us(why)));
-    json_put(object, "not_supervised", not_supervised(why));
+    json_put(object, "not_supervised", not_supervised(why, names));
     json_put(object, "trips", trips);
     json_put(object, "messages", (names->messages != NULL) ? names->messages : json_array());
     return object;

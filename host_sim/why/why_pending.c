@@ -7,10 +7,21 @@
 #include "why/why_internal.h"
 #include "why/why_words.h"
 
-/** Whether the silence of a message counts now. */
-static bool counts(const why_t *why, agv_message_t message) {
-    const bool needs_engagement = why_is_command(message) && (message != AGV_MSG_TURN_SIGNAL_COMMAND);
-    return (why->messages[message].count > 0u) && (!needs_engagement || why->engagement.engaged);
+/** Since when the silence of a message counts; WHY_NEVER: it does not. */
+static uint64_t counts_from(const why_t *why, agv_message_t message) {
+    const uint64_t beat_us = why->messages[message].beat_us;
+    if (!why_is_command(message) || (message == AGV_MSG_TURN_SIGNAL_COMMAND)) {
+        return beat_us;
+    }
+    const uint64_t engaged_us = why->engagement.engaged ? why->engagement.began_us : WHY_NEVER;
+    return ((beat_us == WHY_NEVER) || (beat_us < engaged_us)) ? engaged_us : beat_us;
+}
+
+/** A silence up to this time is usual: for the protocol, or for this sender. */
+static uint64_t usual_us(const why_t *why, agv_message_t message) {
+    const uint64_t two_cycles_us = 2u * (uint64_t)agv_message_cycle_ms(message) * US_PER_MS;
+    const uint64_t sender_us = why->messages[message].usual_us * 3u / 2u;
+    return (sender_us > two_cycles_us) ? sender_us : two_cycles_us;
 }
 
 static bool is_active(const why_t *why, agv_fault_t fault) {
@@ -20,18 +31,18 @@ static bool is_active(const why_t *why, agv_fault_t fault) {
 static bool add_silence(text_t *text, const why_t *why, agv_fault_t fault) {
     const why_row_t *row = why_row(fault);
     const why_message_t *message = &why->messages[row->message];
-    const uint64_t cycle_us = (uint64_t)agv_message_cycle_ms(row->message) * US_PER_MS;
-    if (!counts(why, row->message) || (message->beat_us == WHY_NEVER)) {
-        return false;
-    }
-    const uint64_t age_us = why->now_us - message->beat_us;
+    const uint64_t from_us = counts_from(why, row->message);
+    const uint64_t age_us = (from_us != WHY_NEVER) ? why->now_us - from_us : 0u;
     const bool stuck = message->repeats;
-    if ((age_us <= 2u * cycle_us) || (stuck != (row->kind == WHY_STUCK))) {
+    if ((age_us <= usual_us(why, row->message)) || (stuck != (row->kind == WHY_STUCK))) {
         return false;
     }
     text_add(text, "%03Xh %s %s for %" PRIu64 " ms, deadline %u ms", why->ids.of[row->message],
-             agv_message_name(row->message), stuck ? "kept its alive counter" : "was silent", age_us / US_PER_MS,
-             (unsigned)agv_config_get(&why->config, row->setting));
+             agv_message_name(row->message),
+             !stuck           ? "was silent"
+             : message->steps ? WHY_WRONG_STEPS
+                              : "kept its alive counter",
+             age_us / US_PER_MS, (unsigned)agv_config_get(&why->config, row->setting));
     return true;
 }
 
@@ -54,5 +65,5 @@ bool why_words_pending(text_t *text, const why_t *why, agv_fault_t fault) {
     if ((kind == WHY_SILENCE) || (kind == WHY_STUCK)) {
         return add_silence(text, why, fault);
     }
-    return add_tracked(text, why, fault);
+    return (kind != WHY_BIT) && add_tracked(text, why, fault); /* a bit is decided with its frame */
 }

@@ -87,6 +87,7 @@ static void explain(const why_t *why, const agv_event_t *event, why_trip_t *trip
     switch (trip->kind) {
     case WHY_SILENCE:
     case WHY_STUCK:
+        trip->wrong_steps = message_has_to_increment(&why->config, trip->message);
         explain_silence(why, event, trip);
         break;
     case WHY_SCORE:
@@ -131,6 +132,9 @@ static void show_payload(const why_t *why, const agv_event_t *event, why_trip_t 
     evidence.frame.length = (uint8_t)AGV_DLC;
     for (size_t i = 0u; i < (size_t)AGV_DLC; i++) {
         evidence.frame.data[i] = event->frames[message][i];
+    }
+    if (t_us == trip->cause_us) {
+        trip->bad = evidence;
     }
     trip->evidence[trip->evidence_count] = evidence; /* two at most */
     trip->evidence_count++;

@@ -72,8 +72,11 @@ void why_score(why_tracker_t *tracker, bool bad, uint32_t frames, uint64_t from_
             /* it began after that time */
         }
         tracker->began_us = tracker->is_old ? from_us : tracker->first.t_us;
+        tracker->bad_frames = 0u;
+        tracker->is_mixed = false;
     }
     if (bad) {
+        tracker->bad_frames++;
         tracker->value = (tracker->value + 2u < full) ? tracker->value + 2u : full;
     } else {
         tracker->value = ((tracker->value > 1u) && (frames > 1u)) ? tracker->value - 1u : 0u;
@@ -103,7 +106,7 @@ static void follow(why_t *why, const row_t *row, agv_message_t message, const wh
         tracker->bad = false;
         return;
     }
-    const why_score_frames_t seen = {frame, why_history(&why->messages[message], 1u)};
+    const why_score_frames_t seen = {frame, why_before(&why->messages[message], frame->t_us)};
     if (row->judged && (frame->t_us < why->engagement.judged_us)) {
         if (bad && !tracker->bad) {
             note_first(tracker, seen.frame, seen.before);
@@ -113,6 +116,8 @@ static void follow(why_t *why, const row_t *row, agv_message_t message, const wh
     }
     const uint32_t frames = (what->setting != WHY_NO_SETTING) ? agv_config_get(&why->config, what->setting) : 1u;
     why_score(tracker, bad, frames, row->judged ? why->engagement.began_us : 0u, &seen);
+    const bool is_other = (row->condition == EPS_MODE) && (frame->frame.data[3] != tracker->first.frame.data[3]);
+    tracker->is_mixed = tracker->is_mixed || (bad && is_other);
 }
 
 void why_track_frame(why_t *why, agv_message_t message, const why_evidence_t *frame) {

@@ -116,8 +116,8 @@ static void add_part(text_t *text, const why_t *why, const why_trip_t *trip, cha
     }
 }
 
-static void add_meaning(text_t *text, const why_t *why, const why_trip_t *trip) {
-    const char *words = meanings[trip->reason].words;
+static void add_meaning(text_t *text, const why_t *why, const why_trip_t *trip, agv_fault_t fault) {
+    const char *words = meanings[fault].words;
     for (const char *at = (words != NULL) ? words : ""; *at != '\0'; at++) {
         if (*at == '%') {
             at++;
@@ -143,8 +143,23 @@ static void add_since(text_t *text, const char *words, uint64_t t_us) {
     }
 }
 
+void why_words_refused(text_t *text, const why_trip_t *trip) {
+    const hal_can_frame_t *frame = &trip->refused.first.frame;
+    text_add(text, "%u came ", (unsigned)trip->refused.count);
+    if (why_was_withheld(trip)) {
+        text_add(text, "while the VCU did not report autopilot");
+    } else if (frame->flags == 0u) {
+        text_add(text, "with a length of %u", (unsigned)frame->length);
+    } else {
+        text_add(text, "as %ss", message_form(frame->flags));
+    }
+    add_from(text, ", the first at ", trip->refused.first.t_us);
+}
+
 static void say_silence(text_t *text, const why_t *why, const why_trip_t *trip) {
-    text_add(text, trip->was_heard ? "was silent" : "was never received");
+    text_add(text, why_was_withheld(trip) ? "was not passed on"
+                   : trip->was_heard      ? "was silent"
+                                          : "was never received");
     add_from(text, ": last at ", trip->last_good_us);
     if (trip->from_engagement) {
         add_from(text, ", engaged at ", trip->cause_us);
@@ -157,26 +172,18 @@ static void say_silence(text_t *text, const why_t *why, const why_trip_t *trip) 
     } else {
         /* that it was never heard says it; a flight recorder does not know */
     }
-}
-
-/** The first bad frame: the evidence at the time of the cause. */
-static const why_evidence_t *first_bad(const why_trip_t *trip) {
-    for (size_t i = 0u; i < trip->evidence_count; i++) {
-        const why_evidence_t *evidence = &trip->evidence[i];
-        if ((evidence->t_us == trip->cause_us) && (evidence->t_us != WHY_NEVER) && (evidence->frame.id == trip->id)) {
-            return evidence;
-        }
+    if (trip->refused.count > 0u) {
+        text_add(text, "; ");
+        why_words_refused(text, trip);
     }
-    return NULL;
 }
 
 /** Add the payload of the first bad frame. */
 static void add_payload(text_t *text, const why_trip_t *trip) {
-    const why_evidence_t *evidence = first_bad(trip);
-    if (evidence == NULL) {
+    const hal_can_frame_t *frame = &trip->bad.frame;
+    if (trip->bad.t_us == WHY_NEVER) {
         return;
     }
-    const hal_can_frame_t *frame = &evidence->frame;
     text_add(text, " [");
     for (size_t i = 0u; (i < frame->length) && (i < sizeof frame->data); i++) {
         text_add(text, "%s%02X", (i > 0u) ? " " : "", frame->data[i]);
@@ -185,26 +192,32 @@ static void add_payload(text_t *text, const why_trip_t *trip) {
 }
 
 static void say_stuck(text_t *text, const why_trip_t *trip) {
-    text_add(text, "kept its alive counter");
+    text_add(text, trip->wrong_steps ? WHY_WRONG_STEPS : "kept its alive counter");
     add_since(text, " from ", trip->cause_us);
     add_payload(text, trip);
-    add_from(text, ": last change at ", trip->last_good_us);
+    add_from(text, trip->wrong_steps ? ": last right step at " : ": last change at ", trip->last_good_us);
     text_add(text, ", deadline %" PRId64 " ms", trip->limit);
 }
 
 static void say_bit(text_t *text, const why_trip_t *trip) {
     text_add(text, "reported %s", agv_fault_name(trip->reason));
-    add_since(text, " from ", trip->cause_us);
+    add_from(text, " at ", trip->cause_us);
     add_payload(text, trip);
 }
 
+/** Frames that were not bad may have come between them: then they are more than the limit. */
+static int64_t bad_frames(const why_trip_t *trip) {
+    return (trip->bad_frames != 0u) ? (int64_t)trip->bad_frames : trip->limit;
+}
+
 static void say_score(text_t *text, const why_t *why, const why_trip_t *trip) {
-    if (meanings[trip->reason].words != NULL) {
-        add_meaning(text, why, trip);
+    const agv_fault_t said = trip->is_mixed ? AGV_FAULT_EPS_MODE_NOT_ANGLE : trip->reason;
+    if (meanings[said].words != NULL) {
+        add_meaning(text, why, trip, said);
     } else {
         text_add(text, "reported %s", agv_fault_name(trip->reason));
     }
-    text_add(text, " in %" PRId64 " frames", trip->limit);
+    text_add(text, " in %" PRId64 " frames", bad_frames(trip));
     if (trip->from_engagement) {
         add_from(text, ", from the engagement at ", trip->cause_us);
         text_add(text, " on; it was so before");
@@ -216,8 +229,8 @@ static void say_score(text_t *text, const why_t *why, const why_trip_t *trip) {
 }
 
 static void say_value(text_t *text, const why_trip_t *trip) {
-    const why_evidence_t *bad = first_bad(trip);
-    const bool malformed = (bad != NULL) && ((bad->frame.length != AGV_DLC) || (bad->frame.flags != 0u));
+    const hal_can_frame_t *bad = &trip->bad.frame;
+    const bool malformed = (trip->bad.t_us != WHY_NEVER) && ((bad->length != AGV_DLC) || (bad->flags != 0u));
     if (trip->id == WHY_NO_ID) {
         text_add(text,
                  "had a value that does not exist, or another length or format,"); /* a recorder has values only */
@@ -230,7 +243,7 @@ static void say_value(text_t *text, const why_trip_t *trip) {
 
 static void say_intrusion(text_t *text, const why_trip_t *trip) {
     if (trip->reason == AGV_FAULT_COMMAND_TOO_FAST) {
-        text_add(text, "came in less than half its cycle %" PRId64 " times", trip->limit);
+        text_add(text, "came in less than half its cycle %" PRId64 " times", bad_frames(trip));
         add_from(text, ", the first time at ", trip->cause_us);
     } else {
         text_add(text, (trip->reason == AGV_FAULT_STATUS_ID_IN_USE) ? "is sent by another node"
@@ -245,13 +258,16 @@ static void say_vehicle(text_t *text, const why_t *why, const why_trip_t *trip) 
         text_add(text, "did not confirm %s for %" PRId64 " ms",
                  (trip->message == AGV_MSG_GEAR_STATUS) ? "gear P" : "that the autopilot is off", trip->limit);
     } else {
-        add_meaning(text, why, trip);
+        add_meaning(text, why, trip, trip->reason);
     }
     add_since(text, ", from ", trip->cause_us);
 }
 
 static void say_lasting(text_t *text, const why_t *why, const why_trip_t *trip) {
-    add_meaning(text, why, trip);
+    if ((trip->reason == AGV_FAULT_SUPERVISOR_RESET) && (why->config.after_power_on != AGV_AFTER_POWER_ON_INIT)) {
+        text_add(text, "a power-on (after_power_on: tripped), or ");
+    }
+    add_meaning(text, why, trip, trip->reason);
     if (trip->cause_us != trip->t_us) {
         add_since(text, ", from ", trip->cause_us);
     }
@@ -298,7 +314,10 @@ static void say_no_beat(text_t *text, const why_t *why, agv_message_t number) {
     if (message->count == 0u) {
         text_add(text, "%03Xh never received", id);
     } else if (message->repeats) {
-        text_add(text, "alive counter of %03Xh stuck at %u", id, message->counter.value);
+        text_add(text,
+                 message->steps ? "alive counter of %03Xh steps otherwise than by 1 to 3"
+                                : "alive counter of %03Xh stuck at %u",
+                 id, message->counter.value);
     } else {
         text_add(text, "%03Xh last received at ", id);
         why_words_time(text, message->last_us);

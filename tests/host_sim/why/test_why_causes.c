@@ -80,10 +80,19 @@ static const row_t ROWS[] = {
      {AGV_FAULT_STEERING_DEVIATION, 2010, WHY_BUDGET, 1010, NONE, 500, "ddeg"}},
     {"a command was out of range before the engagement too: the last good one is older",
      {{0x065, "\x28\x23", 900}, {0x065, "\x51\x46", 950}, {0x363, AUTOPILOT, 1000}, {0x065, "\x51\x46", 1020}},
-     {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, 1020, WHY_VALUE, 1020, 900, 18000, "ddeg"}},
+     {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, 1020, WHY_VALUE, 1020, 900, 9000, "ddeg"}},
     {"the command that is out of range: 18001",
      {{0x363, AUTOPILOT, 1000}, {0x065, "\x28\x23", 1020}, {0x065, "\x51\x46", 1045}},
-     {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, 1045, WHY_VALUE, 1045, 1020, 18000, "ddeg"}},
+     {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, 1045, WHY_VALUE, 1045, 1020, 9000, "ddeg"}}, /* on the wire 0 is -900.0 deg */
+    {"a bit of 363h that counts while engaged only began with the engagement",
+     {{0x363, "\0\0\0\0\0\0\x40", 900},
+      {0x363, "\0\0\0\0\x08\0\x40\x01", 910},
+      {0x363, "\0\0\0\0\x08\0\x80\x02", 1000},
+      {0x363, "\0\0\0\0\x08\0\x80\x03", 1010}},
+     {AGV_FAULT_VCU_AI_CAN_LOST, 1000, WHY_BIT, 1000, 900, WHY_NO_LIMIT, NULL}},
+    {"of two frames with one stamp the second has the bit: the last good one came before",
+     {{0x167, "\0\0\0\x01", 1000}, {0x167, "\0\0\0\x01", 1010}, {0x167, "\0\0\0\x01\0\0\0\x40", 1010}},
+     {AGV_FAULT_EPS_MOTOR_ENCODER, 1010, WHY_BIT, 1010, 1000, WHY_NO_LIMIT, NULL}},
 };
 
 static void check_row(const row_t *row) {
@@ -131,6 +140,86 @@ void test_a_frame_of_another_length_does_not_end_a_silence(void) {
     TEST_ASSERT_EQUAL_UINT64(1000000, trip_by(AGV_FAULT_GEAR_STATUS_TIMEOUT, 1126)->last_good_us);
 }
 
+void test_frames_in_another_form_during_a_silence(void) {
+    feed_frame(why, HAL_CAN_VEHICLE, 0x0A3, "\x08\0\0\0\0\0\0", 1000);
+    const hal_can_frame_t frames[] = {{.id = 0x0A3, .length = 7},
+                                      {.id = 0x0A3, .length = 8, .flags = HAL_CAN_EXTENDED}};
+    for (uint64_t i = 0; i < 4; i++) {
+        why_frame(why, HAL_CAN_VEHICLE, &frames[i / 2], 1020000 + (i * 25000));
+    }
+    check_words(trip_by(AGV_FAULT_GEAR_STATUS_TIMEOUT, 1126),
+                "0A3h gear_status was silent: last at 1.000 s, deadline 125 ms, none since; 4 came with a length of 7, "
+                "the first at 1.020 s");
+}
+
+void test_extended_frames_during_a_silence(void) {
+    const hal_can_frame_t frame = {.id = 0x0A3, .length = 8, .flags = HAL_CAN_EXTENDED};
+    feed_frame(why, HAL_CAN_VEHICLE, 0x0A3, "\x08\0\0\0\0\0\0", 1000);
+    why_frame(why, HAL_CAN_VEHICLE, &frame, 1025000);
+    check_words(trip_by(AGV_FAULT_GEAR_STATUS_TIMEOUT, 1126), "0A3h gear_status was silent: last at 1.000 s, deadline "
+                                                              "125 ms, none since; 1 came as extended frames, the "
+                                                              "first at 1.025 s");
+}
+
+void test_a_command_that_the_gateway_withheld(void) {
+    config.topology = AGV_TOPOLOGY_GATEWAY;
+    why_free(why);
+    why = why_new(&config);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 1000);
+    for (uint64_t i = 0; i < 6; i++) { /* 363h reports manual after that of 1010 */
+        feed_frame(why, HAL_CAN_AI, 0x065, "\0\0\0\0\0\0\0", 1010 + (i * 25));
+        feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 1020 + (i * 25));
+        feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\0\0\x40", 1030 + (i * 25));
+    }
+    const why_trip_t *trip = trip_by(AGV_FAULT_STEERING_COMMAND_TIMEOUT, 1136);
+    TEST_ASSERT_EQUAL_UINT64(1010000, trip->last_good_us);
+    TEST_ASSERT_EQUAL_UINT64(1035000, trip->cause_us);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 1170);
+    feed_frame(why, HAL_CAN_AI, 0x065, "\0\0\0\0\0\0\0", 1180); /* does not end it: TRIPPED passes none on */
+    check_words(trip, "065h steering_command was not passed on: last at 1.010 s, deadline 125 ms, none since; 5 came "
+                      "while the VCU did not report autopilot, the first at 1.035 s");
+}
+
+void test_of_two_frames_with_one_stamp_the_bad_one_is_shown(void) {
+    feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\x01\0\0\0", 1010);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\x01\0\0\0\x08", 1010);
+    const why_trip_t *trip = trip_by(AGV_FAULT_EPS_OVER_CURRENT_SHUTDOWN, 1010);
+    TEST_ASSERT_EQUAL_UINT(2, trip->evidence_count);
+    TEST_ASSERT_EQUAL_HEX8(0x08, trip->evidence[1].frame.data[7]);
+    TEST_ASSERT_EQUAL_UINT64(WHY_NEVER, trip->last_good_us);
+    check_words(trip, "167h eps_status reported EPS_OVER_CURRENT_SHUTDOWN at 1.010 s [00 00 00 01 00 00 00 08]");
+}
+
+void test_bad_frames_with_good_ones_between_them(void) {
+    for (uint64_t i = 0; i < 9; i++) { /* score 2 1 3 2 4 3 5 4 6 */
+        feed_frame(why, HAL_CAN_VEHICLE, 0x167, (i % 2 == 0) ? "\0\0\0\x01\0\0\0\x01" : "\0\0\0\x01\0\0\0",
+                   1000 + (i * 10));
+    }
+    check_words(trip_by(AGV_FAULT_EPS_UNDER_VOLTAGE, 1080), "167h eps_status reported EPS_UNDER_VOLTAGE in 5 frames, "
+                                                            "the first at 1.000 s [00 00 00 01 00 00 00 01]");
+}
+
+void test_bad_modes_of_several_kinds(void) {
+    static const char *const modes[] = {"\0\0\0\0\0\0\0", "\0\0\0\x02\0\0\0", "\0\0\0\x03\0\0\0", "\0\0\0\x09\0\0\0",
+                                        "\0\0\0\xFF\0\0\0"};
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 1000);
+    for (uint64_t i = 0; i < 5; i++) {
+        feed_frame(why, HAL_CAN_VEHICLE, 0x167, modes[i], 2000 + (i * 10));
+    }
+    check_words(
+        trip_by(AGV_FAULT_EPS_MODE_OFF, 2040),
+        "167h eps_status reported an EPS mode other than angle control in 5 frames, the first at 2.000 s [00 00 "
+        "00 00 00 00 00 00]");
+}
+
+void test_a_start_in_tripped_that_was_chosen(void) {
+    config.after_power_on = AGV_AFTER_POWER_ON_TRIPPED;
+    why_free(why);
+    why = why_new(&config);
+    feed_state(why, 0, AGV_STATE_TRIPPED, AGV_FAULT_SUPERVISOR_RESET, 0);
+    check_words(why_trip(why, 0), "a power-on (after_power_on: tripped), or the processor was reset while it ran");
+}
+
 void test_a_message_that_never_came(void) {
     feed_state(why, 0, AGV_STATE_INIT, AGV_FAULT_NONE, 5);
     const why_trip_t *trip = trip_by(AGV_FAULT_EPS_STATUS_TIMEOUT, 100);
@@ -147,7 +236,11 @@ void test_a_wrong_step_counts_as_stuck_where_the_counter_has_to_increment(void) 
     feed_frame(why, HAL_CAN_VEHICLE, 0x067, "\x02\0\0\0\0\0\0", 1010);
     feed_frame(why, HAL_CAN_VEHICLE, 0x067, "\x20\0\0\0\0\0\0", 1020);
     feed_frame(why, HAL_CAN_VEHICLE, 0x067, "\x01\0\0\0\0\0\0", 1030);
-    TEST_ASSERT_EQUAL_UINT64(1020000, trip_by(AGV_FAULT_EPS_HEARTBEAT_STUCK, 1061)->cause_us);
+    const why_trip_t *trip = trip_by(AGV_FAULT_EPS_HEARTBEAT_STUCK, 1061);
+    TEST_ASSERT_EQUAL_UINT64(1020000, trip->cause_us);
+    check_words(trip,
+                "067h steering_status stepped its alive counter otherwise than by 1 to 3 from 1.020 s on [20 00 00 "
+                "00 00 00 00 00]: last right step at 1.010 s, deadline 50 ms");
 }
 
 void test_a_mode_of_the_eps_counts_from_the_engagement_on(void) {

@@ -93,7 +93,7 @@ void test_the_limit_of_a_command(void) {
     event.frames[AGV_MSG_STEERING_COMMAND][1] = 0x46;
     event.frames[AGV_MSG_GEAR_COMMAND][0] = AGV_GEAR_D;
     const why_trip_t *trip = trip_of(AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, ALL, 1000, 3008);
-    TEST_ASSERT_EQUAL_INT64(18000, trip->limit);
+    TEST_ASSERT_EQUAL_INT64(9000, trip->limit);
     TEST_ASSERT_EQUAL_STRING("ddeg", trip->unit);
     check_words(trip,
                 "065h steering_command commanded a value that does not exist at 3.008 s [51 46 00 00 00 00 00 00]");

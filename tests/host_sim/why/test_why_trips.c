@@ -22,6 +22,21 @@ void test_how_long_each_state_lasted(void) {
     TEST_ASSERT_EQUAL_UINT64(3300000, why_trip(why, 0)->confirmed_us); /* for the first time */
 }
 
+void test_the_time_without_power_is_not_supervised(void) {
+    const session_event_t again = {
+        .t_ms = 3500,
+        .stopped_ms = 3000,
+        .recorded = {.kind = AGV_EVENT_STATE, .b = AGV_STATE_TRIPPED, .c = AGV_FAULT_SUPERVISOR_RESET}};
+    feed_state(why, 0, AGV_STATE_INIT, AGV_FAULT_NONE, 0);
+    feed_state(why, AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_FAULT_NONE, 510);
+    feed_fault(why, AGV_FAULT_WRONG_ID_SET, AGV_CLASS_WARN, true, 2900);
+    why_event(why, &again);
+    why_end(why, 4000000);
+    TEST_ASSERT_EQUAL_UINT64(2990000, why_supervised_us(why)); /* 510 to 3000, 3500 to 4000 */
+    TEST_ASSERT_EQUAL_UINT64(100000, why_fault(why, 0)->active_us);
+    TEST_ASSERT_FALSE(why_fault(why, 0)->active);
+}
+
 void test_a_run_that_begins_in_tripped_does_not_know_the_cause(void) {
     feed_state(why, 0, AGV_STATE_TRIPPED, AGV_FAULT_STEERING_COMMAND_TIMEOUT, 0);
     feed_frame(why, HAL_CAN_VEHICLE, 0x065, "\0\0\0\0\0\0\0", 6);
@@ -143,6 +158,41 @@ void test_what_init_lacked_is_what_the_supervisor_says(void) {
     why_event(why, &startup);
     why_end(why, 11000000);
     TEST_ASSERT_EQUAL_HEX16(AGV_MISSING_OUTPUT | AGV_MISSING_MANUAL, why_missing(why));
+}
+
+static const char *pending(agv_fault_t fault) {
+    static text_t text;
+    text_clear(&text);
+    return why_words_pending(&text, why, fault) ? text.bytes : NULL;
+}
+
+void test_a_command_counts_from_the_engagement_on_at_the_end_too(void) {
+    feed_state(why, AGV_STATE_INIT, AGV_STATE_ACTIVE, AGV_FAULT_NONE, 900);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x065, "\0\0\0\0\0\0\0", 880);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\0\0\x80", 1000);
+    why_end(why, 1094000);
+    TEST_ASSERT_EQUAL_STRING("065h steering_command was silent for 94 ms, deadline 125 ms",
+                             pending(AGV_FAULT_STEERING_COMMAND_TIMEOUT));
+}
+
+void test_the_usual_cycle_of_a_slow_sender_is_no_silence(void) {
+    feed_state(why, AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_FAULT_NONE, 900);
+    for (char i = 0; i < 5; i++) {
+        const char signals[9] = {0, 0, 0, 0, 0, 0, 0, i};
+        feed_frame(why, HAL_CAN_VEHICLE, 0x43F, signals, 1000 + ((uint64_t)i * 300));
+    }
+    why_end(why, 2500000); /* 300 ms after the last one */
+    TEST_ASSERT_NULL(pending(AGV_FAULT_AI_HEARTBEAT_LOST));
+    why_end(why, 2700000);
+    TEST_ASSERT_EQUAL_STRING("43Fh turn_signal_command was silent for 500 ms, deadline 350 ms",
+                             pending(AGV_FAULT_AI_HEARTBEAT_LOST));
+}
+
+void test_a_bit_that_does_not_count_has_not_begun(void) {
+    feed_state(why, AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_FAULT_NONE, 900);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\x08\0\x40", 1000);
+    why_end(why, 1005000);
+    TEST_ASSERT_NULL(pending(AGV_FAULT_VCU_AI_CAN_LOST));
 }
 
 void test_the_limit_of_moving_while_safe_is_no_setting(void) {
