@@ -10,6 +10,7 @@
 #include "io/output_json.h"
 #include "report/report_page.h"
 #include "report/series.h"
+#include "text/units.h"
 #include "traffic/traffic.h"
 
 enum { NAME_SIZE = 32, DIGITS = 15 };
@@ -24,6 +25,7 @@ struct analysis {
     series_t *series;   /**< NULL: no --report */
     json_t *remarks;    /**< of the page; NULL: none */
     bool is_partial;    /**< a part of the run was not supervised */
+    bool goes_back;     /**< because the time stamps go back */
     uint64_t last_us;   /**< of the last frame; in the end, of the end */
     trace_t trace;
     output_t files[ANALYSIS_FILES];
@@ -140,6 +142,11 @@ void analysis_sent(analysis_t *analysis, hal_can_side_t side, const hal_can_fram
 void analysis_event(void *ctx, const session_event_t *event) {
     analysis_t *analysis = ctx;
     why_event(analysis->why, event);
+    const bool starts =
+        !event->is_led && (event->recorded.kind == (uint8_t)AGV_EVENT_STATE) && (event->recorded.a == 0u);
+    if (starts && (analysis->traffic != NULL)) {
+        traffic_start(analysis->traffic, event->t_ms * US_PER_MS);
+    }
     if (analysis->series != NULL) {
         series_event(analysis->series, event);
     }
@@ -154,7 +161,7 @@ static const char *name_of(const analysis_t *analysis, int side) {
 
 /** The object of --why. @param messages the array of survey; the reference is taken */
 static json_t *make_why(const analysis_t *analysis, json_t *messages) {
-    why_names_t names = {.log = analysis->request.log, .messages = messages};
+    why_names_t names = {.log = analysis->request.log, .goes_back = analysis->goes_back, .messages = messages};
     for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
         names.interfaces[side] = name_of(analysis, side);
     }
@@ -196,6 +203,7 @@ void analysis_remark(analysis_t *analysis, analysis_remark_t kind, const char *t
     const bool is_hint = kind == ANALYSIS_HINT;
     json_add(analysis->remarks, json_pack("{s:b, s:s}", "hint", is_hint, "text", text));
     analysis->is_partial = analysis->is_partial || !is_hint;
+    analysis->goes_back = analysis->goes_back || (kind == ANALYSIS_GOES_BACK);
 }
 
 void analysis_write(analysis_t *analysis) {

@@ -70,6 +70,7 @@ void analysis_end(analysis_t *analysis, uint64_t t_us);
 /** Kinds of remarks. */
 typedef enum {
     ANALYSIS_NOT_SUPERVISED, /**< a part of the run was not supervised: the page may not look like a pass */
+    ANALYSIS_GOES_BACK,      /**< the same, because the time stamps go back */
     ANALYSIS_HINT            /**< what to try */
 } analysis_remark_t;
 

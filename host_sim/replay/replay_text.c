@@ -14,7 +14,7 @@
 
 enum { MANUAL_BIT = 5 };
 _Static_assert((1u << MANUAL_BIT) == AGV_MISSING_MANUAL, "the bit of manual");
-enum { NOT_SUPERVISED_LABEL = 16, START_MS = 1000, BACK_US = 10 * US_PER_MS };
+enum { NOT_SUPERVISED_LABEL = 16, BACK_US = 10 * US_PER_MS };
 
 /** Whether something had begun when the log ended. */
 static bool has_pending(const replay_text_t *replay) {
@@ -108,18 +108,17 @@ static void add_missing(text_t *text, const replay_text_t *replay, bool details)
 /** What was not supervised: all of it, or a beginning that is longer than a start takes. @return false: neither */
 static bool add_not_supervised(text_t *text, const replay_text_t *replay) {
     const bool never = why_supervised_us(replay->why) == 0u;
-    const uint64_t init_us = why_state_us(replay->why, WHY_INIT);
-    const uint64_t normal_us = ((uint64_t)replay->config->init_hold_ms + (uint64_t)START_MS) * US_PER_MS;
+    if (!why_left_init_late(replay->why)) {
+        return false;
+    }
     if (never) {
         text_add(text, "never left INIT");
         if (why_missing(replay->why) == 0u) {
             text_add(text, ": the log is too short, a start takes %u ms", (unsigned)replay->config->init_hold_ms);
         }
-    } else if (init_us > normal_us) {
-        why_words_time(text, init_us);
-        text_add(text, " in INIT");
     } else {
-        return false;
+        why_words_time(text, why_state_us(replay->why, WHY_INIT));
+        text_add(text, " in INIT");
     }
     if (why_missing(replay->why) != 0u) {
         text_add(text, never ? ", missing: " : ", until then missing: ");
@@ -191,7 +190,7 @@ void replay_text_remarks(const replay_text_t *replay, analysis_t *analysis) {
     }
     text_clear(&text);
     if (replay_text_goes_back(&text, replay->heard)) {
-        analysis_remark(analysis, ANALYSIS_NOT_SUPERVISED, text.bytes);
+        analysis_remark(analysis, ANALYSIS_GOES_BACK, text.bytes);
     }
     for (int fault = 0; fault < (int)AGV_FAULT_COUNT; fault++) {
         text_clear(&text);

@@ -72,12 +72,9 @@ void why_text_supervised(const why_t *why) {
     why_text_line("supervised", WHY_TEXT_LABEL, text.bytes);
 }
 
-/** Add what came after a trip, or that it did not come. */
-static void add_time_after_trip(text_t *text, const char *what, const char *never, uint64_t t_us) {
-    if (t_us == WHY_NEVER) {
-        text_add(text, "%s", never);
-    } else {
-        text_add(text, "%s ", what);
+static void add_time(text_t *text, const char *what, uint64_t t_us) {
+    text_add(text, "%s", what);
+    if (t_us != WHY_NEVER) {
         why_words_time(text, t_us);
     }
 }
@@ -85,16 +82,23 @@ static void add_time_after_trip(text_t *text, const char *what, const char *neve
 static void print_then(const why_text_t *shown, const why_trip_t *trip) {
     text_t text = {.used = 0u};
     if (!shown->is_recorder) {
-        add_time_after_trip(&text, "first safe frame", "no safe frame", trip->first_safe_us);
+        const bool none = trip->first_safe_us == WHY_NEVER;
+        add_time(&text, none ? "no safe frame" : "first safe frame ", trip->first_safe_us);
         text_add(&text, "; ");
     }
-    add_time_after_trip(&text, "P confirmed", "P not confirmed", trip->confirmed_us);
-    if (!shown->is_recorder) {
-        text_add(&text, "; ");
-        add_time_after_trip(&text, "stands", "does not stand", trip->stopped_us);
-        if ((trip->confirmed_us == WHY_NEVER) || (trip->stopped_us == WHY_NEVER)) {
-            text_add(&text, " (a recording cannot obey)");
-        }
+    const char *mark = shown->is_recorder ? "" : " (a recording cannot obey)"; /* behind the last that it explains */
+    if (trip->confirmed_us == WHY_NEVER) {
+        text_add(&text, "%s not confirmed%s", shown->is_recorder ? "P" : why_unconfirmed(trip),
+                 (trip->stopped_us == WHY_NEVER) ? "" : mark);
+    } else {
+        add_time(&text, "P confirmed ", trip->confirmed_us);
+    }
+    if (shown->is_recorder) {
+        /* it has no wheel speeds */
+    } else if (trip->stopped_us == WHY_NEVER) {
+        text_add(&text, "; does not stand%s", mark);
+    } else {
+        add_time(&text, "; stands ", trip->stopped_us);
     }
     why_text_line("  then", WHY_TEXT_LABEL, text.bytes);
 }
@@ -188,7 +192,7 @@ static void print_fault(const why_fault_t *fault, const widths_t *widths, bool i
              (int)widths->times, times_text(&times, fault), (int)widths->lasted, time_text(&lasted, fault->active_us));
     if (fault->from_recording) {
         text_add(&text, "  (a recording cannot obey)");
-    } else if (fault->in_init && (fault->fault_class == AGV_CLASS_TRIP)) {
+    } else if (why_did_not_trip(fault)) {
         text_add(&text, "  in INIT: no trip");
     } else if ((fault->fault_class == AGV_CLASS_TRIP) && (fault->trip_us > fault->first_us)) {
         text_add(&text, "  a warning until ");

@@ -1,5 +1,6 @@
 """Every shipped scenario: as it is, in the other topology and with the other ID set; and that each of them can fail."""
 import collections
+import concurrent.futures
 import json
 import os
 import pathlib
@@ -47,6 +48,22 @@ class Playing(hostsim.Case):
 class Shipped(Playing):
     def test_every_scenario_passes(self):
         self.play(SHIPPED)
+
+    def test_what_why_and_events_say_of_every_scenario_agrees(self):
+        def check(path):
+            files = [self.folder / f"{path.stem}.{name}" for name in ("why", "events")]
+            self.run_good("scenario", "--why", files[0], "--events", files[1], path)
+            why = json.loads(files[0].read_text(encoding="utf-8"))
+            events = [json.loads(line) for line in files[1].read_text(encoding="utf-8").splitlines()]
+            warned = [event for event in events if event.get("class") == "warn" and event["active"]]
+            return {"supervised": events[-1]["supervised_ms"] - why["supervised_ms"],
+                    "warnings": events[-1]["warnings"] - len(warned),
+                    "causes after their trip": [trip["t_ms"] for trip in why["trips"] if (trip["cause_ms"] or 0) > trip["t_ms"]],
+                    "last good frames after the cause": [trip["t_ms"] for trip in why["trips"] if trip["last_good_ms"] is not None
+                                                         and trip["last_good_ms"] > trip["cause_ms"]]}
+        with concurrent.futures.ThreadPoolExecutor(max_workers=2) as pool:
+            for path, differs in zip(SHIPPED, pool.map(check, SHIPPED)):
+                self.assertEqual([key for key, value in differs.items() if value], [], path.stem)
 
     def test_the_same_run_twice_is_the_same(self):
         for name in ("demo", "override", "garbage_from_eps", "id_collision"):

@@ -104,6 +104,7 @@ class FiveLogs(Case):
                                    "counts at 1.994 s:")
         self.assertEqual(lines[1], "                cut or sort the log there")
         self.assertEqual(lines[-1], "log         time stamps that went backwards: 1420")
+        self.assertEqual(self.why(log)["not_supervised"], ["time_stamps"])
 
     def test_a_clock_that_is_set_back_by_less_than_a_silence_hides_it(self):
         silent = traffic.frames(6000, engage_ms=1000, edit=lambda frame: None if frame.name == "steering_command" and
@@ -204,11 +205,23 @@ class Text(Case):
             "supervised  11.48 s   INIT 0.51  STANDBY 0.49  ACTIVE 2.11  TRIPPED 8.89  SAFE 0.00",
             "tripped     at 3.107 s (22:13:23.107): STEERING_COMMAND_TIMEOUT",
             "  why       065h steering_command was silent: last at 2.981 s, deadline 125 ms, next at 4.006 s",
-            "  then      first safe frame 3.107 s; P not confirmed; does not stand (a recording cannot obey)",
+            "  then      first safe frame 3.107 s; P and autopilot off not confirmed; does not stand (a recording",
+            "            cannot obey)",
             "faults      STEERING_COMMAND_TIMEOUT  trip  3.107 s   1 time   0.900 s",
             "            SAFE_STATE_UNCONFIRMED    trip  3.607 s   1 time   8.387 s  (a recording cannot obey)",
             "            VEHICLE_NOT_STOPPING      trip  8.107 s   1 time   3.887 s  (a recording cannot obey)"])
         self.assertEqual(self.text(log, "--fail-on-trip", status=1), lines)
+
+    def test_what_of_the_confirmation_did_not_come(self):
+        def then(name, change):
+            emergency, other = edit_payload("eps_status", 2000, byte(7, 0x08)), edit_payload(name, 2100, change)
+            stands = edit_payload("wheel_speed", 2500, lambda data: data.__setitem__(slice(0, 8), bytes(8)))
+            log = traffic.log(traffic.frames(3000, engage_ms=1000, edit=lambda frame: stands(other(emergency(frame)))))
+            return next(line for line in self.text(log) if line.startswith("  then"))
+        self.assertEqual(then("gear_status", byte(0, 8)), "  then      first safe frame 2.003 s; autopilot off not confirmed "
+                         "(a recording cannot obey); stands")
+        self.assertEqual(then("vehicle_status", byte(6, 0x40)), "  then      first safe frame 2.003 s; P not confirmed "
+                         "(a recording cannot obey); stands 2.501 s")
 
     def test_a_trip_that_an_earlier_run_latched(self):
         log = traffic.log(traffic.frames(4000, engage_ms=1000, edit=stop(("steering_command",), 3000)))
@@ -234,10 +247,13 @@ class Text(Case):
         lines = self.text(traffic.log(traffic.frames(8000, edit=stop(EPS, 0, 3000))))
         self.assertEqual(lines[0], "NOT SUPERVISED: 3.513 s in INIT, until then missing: eps_heartbeat, trip_cause, "
                                    "messages")
+        self.assertEqual(self.why(traffic.log(traffic.frames(8000, edit=stop(EPS, 0, 3000))))["not_supervised"],
+                         ["eps_heartbeat", "trip_cause", "messages"])
 
     def test_a_log_that_is_too_short(self):
         lines = self.text(traffic.log(traffic.frames(300)))
         self.assertEqual(lines[0], "NOT SUPERVISED: never left INIT: the log is too short, a start takes 500 ms")
+        self.assertEqual(self.why(traffic.log(traffic.frames(300)))["not_supervised"], ["init"])
 
     def test_stamps_that_are_no_time_of_day(self):
         log = traffic.log(traffic.frames(2000, edit=edit_payload("vehicle_status", 1500, raise_remote_signal_lost)),
@@ -347,7 +363,7 @@ CAUSES = {  # the sentence behind `why` of a log with this edit
         "deadline 50 ms"),
     "a fault bit": (
         edit_payload("eps_status", 2000, byte(7, 0x40)),
-        "167h eps_status reported EPS_MOTOR_ENCODER from 2.003 s on [00 00 00 01 00 00 00 40]"),
+        "167h eps_status reported EPS_MOTOR_ENCODER at 2.003 s [00 00 00 01 00 00 00 40]"),
     "a score": (
         edit_payload("eps_status", 2000, byte(3, 7)),
         "167h eps_status reported an EPS mode that does not exist in 5 frames, the first at 2.003 s [00 00 00 07 00 00 00 00]"),
