@@ -3,6 +3,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 
+#include "common/message_facts.h"
 #include "hal/can.h"
 #include "logs/candump_line.h"
 #include "text/units.h"
@@ -69,20 +70,6 @@ static uint32_t message_of(const choice_t *choice, const series_frame_t *frame) 
     return (frame->id == choice->status_id) ? SIGNALS_STATUS_FRAME : UINT32_MAX;
 }
 
-/** What is special about a frame that has no signals. */
-static const char *flags_text(const series_frame_t *frame) {
-    if ((frame->flags & HAL_CAN_ERROR) != 0u) {
-        return "error frame";
-    }
-    if ((frame->flags & HAL_CAN_REMOTE) != 0u) {
-        return "remote frame";
-    }
-    if ((frame->flags & HAL_CAN_FD) != 0u) {
-        return "CAN FD frame";
-    }
-    return (frame->flags != 0u) ? "extended frame" : "";
-}
-
 static json_t *frame_json(const choice_t *choice, const series_frame_t *frame) {
     const uint32_t message = message_of(choice, frame);
     const bool has_signals =
@@ -93,7 +80,8 @@ static json_t *frame_json(const choice_t *choice, const series_frame_t *frame) {
     const char *name = (message <= SIGNALS_STATUS_FRAME) ? signals_message_name(message) : NULL;
     return json_pack("[I,i,b,s,s,s,s,b]", (json_int_t)frame->t_us, (int)frame->side, (int)frame->sent,
                      candump_id_text(id, frame->id, frame->flags), data_text(frame, data), (name != NULL) ? name : "",
-                     has_signals ? signals_print(signals, sizeof signals, message, frame->data) : flags_text(frame),
+                     has_signals ? signals_print(signals, sizeof signals, message, frame->data)
+                                 : message_form(frame->flags),
                      (int)tells(choice, frame, message));
 }
 

@@ -51,6 +51,7 @@ static json_t *trip_json(const report_page_t *page, const why_t *why, const seri
     json_put(object, "limit", (trip->limit != WHY_NO_LIMIT) ? json_integer((json_int_t)trip->limit) : json_null());
     json_put(object, "unit", json_text(trip->unit));
     json_put(object, "from_recording", json_boolean(trip->from_recording));
+    json_put(object, "unconfirmed", json_string(why_unconfirmed(trip)));
     json_put(object, "headline", json_string(sentence.headline));
     json_put(object, "cause", json_string(sentence.cause));
     json_put(object, "action", json_string(sentence.action));
@@ -80,6 +81,7 @@ static json_t *faults_json(const why_t *why) {
         json_put(object, "times", json_uint(fault->times));
         json_put(object, "active", json_boolean(fault->active));
         json_put(object, "from_recording", json_boolean(fault->from_recording));
+        json_put(object, "no_trip", json_boolean(why_did_not_trip(fault)));
         json_add(faults, object);
     }
     return faults;

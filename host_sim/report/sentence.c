@@ -7,6 +7,7 @@
 
 #include "agv/names.h"
 #include "text/units.h"
+#include "text/words.h"
 #include "why/why_words.h"
 
 enum { TIME_SIZE = 32, LIMIT_SIZE = 64, STOOD_US = 20000, US_PER_TENTH = 100, EXACT_TENTHS = 100 };
@@ -104,11 +105,41 @@ static void say_message(char text[SENTENCE_SIZE], const why_trip_t *trip) {
     }
 }
 
+static bool never_came(const why_trip_t *trip) {
+    return (trip->kind == WHY_SILENCE) && (trip->last_good_us == WHY_NEVER) && !trip->was_heard &&
+           !trip->from_earlier_run;
+}
+
+/** What failed. The words of a silence are of a message that came before. */
+static void say_phrase(char text[SENTENCE_SIZE], const why_trip_t *trip) {
+    const char *phrase = sentence_phrase(trip->reason);
+    if (trip->wrong_steps) {
+        say(text, "the alive counter of ");
+        say_message(text, trip);
+        say(text, " did not step by 1 to 3");
+    } else if (why_was_withheld(trip)) {
+        say(text, "the gateway did not pass ");
+        say_message(text, trip);
+        say(text, " on, while the VCU did not report autopilot");
+    } else if (trip->refused.count > 0u) {
+        say_message(text, trip);
+        say(text, " came in a form that the protocol does not have");
+    } else if (never_came(trip)) {
+        const char *const verb = strstr(phrase, "no longer ");
+        const char *const rest = (verb != NULL) ? verb + strlen("no longer ") : "";
+        const char *const end = (verb != NULL) ? verb : strstr(phrase, "fell silent");
+        say(text, "%.*s%s%s", (int)(end - phrase), phrase, (verb != NULL) ? "never " : "was never heard", rest);
+    } else {
+        say(text, "%s", phrase);
+    }
+}
+
 static void say_silence(char text[SENTENCE_SIZE], const why_trip_t *trip) {
     const bool is_stuck = trip->kind == WHY_STUCK;
     char time[TIME_SIZE];
     char limit[LIMIT_SIZE];
-    if ((trip->last_good_us == WHY_NEVER) && !trip->was_heard) {
+    const bool never = never_came(trip);
+    if (never) {
         say_message(text, trip);
         say(text, " never came.");
     } else if (trip->last_good_us == WHY_NEVER) {
@@ -119,14 +150,23 @@ static void say_silence(char text[SENTENCE_SIZE], const why_trip_t *trip) {
     } else {
         say(text, is_stuck ? "The alive counter of " : "");
         say_message(text, trip);
-        say(text, " %s at %s.", is_stuck ? "changed for the last time" : "came for the last time",
+        say(text, " %s for the last time at %s.",
+            trip->wrong_steps        ? "stepped by 1 to 3"
+            : is_stuck               ? "changed"
+            : why_was_withheld(trip) ? "was passed on"
+                                     : "came",
             at(trip->last_good_us, time));
     }
     if (has_limit(trip)) {
-        say(text, " Its deadline is %s.", limit_text(trip, limit));
+        say(text, " %s is %s.", never ? "The deadline for the first one" : "Its deadline", limit_text(trip, limit));
     }
     if (trip->next_us != WHY_NEVER) {
         say(text, " The next one came at %s.", at(trip->next_us, time));
+    }
+    if (trip->refused.count > 0u) {
+        text_t refused = {.used = 0u};
+        why_words_refused(&refused, trip);
+        say(text, " Of its frames %s.", refused.bytes);
     }
 }
 
@@ -183,6 +223,8 @@ static void say_output(char text[SENTENCE_SIZE], const why_trip_t *trip, uint64_
     char time[TIME_SIZE];
     if (opened_us == WHY_NEVER) {
         say(text, " The safety output stayed closed.");
+    } else if (opened_us == 0u) {
+        say(text, " The safety output was open already.");
     } else if (opened_us <= trip->t_us + US_PER_MS) {
         say(text, " The safety output was opened at once.");
     } else {
@@ -201,8 +243,10 @@ static void say_action(char text[SENTENCE_SIZE], const report_page_t *page, cons
     } else {
         const uint64_t trip_us = sentence_trip_us(trip);
         const bool at_once = trip->first_safe_us < trip_us + (uint64_t)US_PER_TENTH;
-        say(text, " %s%s it sent the first of the safe commands: gear P, throttle 0, autopilot off.",
-            at_once ? "At once" : lasting(trip_us, trip->first_safe_us, time), at_once ? "" : " later");
+        const bool parks = page->config->park == (uint16_t)AGV_PARK_AT_ONCE;
+        say(text, " %s%s it sent the first of the safe commands: %sthrottle 0, autopilot off%s.",
+            at_once ? "At once" : lasting(trip_us, trip->first_safe_us, time), at_once ? "" : " later",
+            parks ? "gear P, " : "", parks ? "" : ", and gear P when the wheels stand, or after 3 s");
     }
 }
 
@@ -239,7 +283,9 @@ void sentence_trip(sentence_t *sentence, const report_page_t *page, const why_tr
     } else if (trip->stopped_us != WHY_NEVER) {
         begin = "The vehicle stands";
     }
-    say(sentence->headline, "%s because %s.", begin, sentence_phrase(trip->reason));
+    say(sentence->headline, "%s because ", begin);
+    say_phrase(sentence->headline, trip);
+    say(sentence->headline, ".");
     say_cause(sentence->cause, page->config, trip);
     say_action(sentence->action, page, trip);
     say_output(sentence->action, trip, opened_us);
@@ -281,9 +327,17 @@ void sentence_no_trip(sentence_t *sentence, const why_t *why, uint64_t end_us) {
         const uint64_t init_ms = (end_us / US_PER_MS) - (supervised_us / US_PER_MS);
         say(sentence->cause, " The other %s it was in INIT.", at(init_ms * US_PER_MS, whole));
     }
-    if (why_fault_count(why) > 0u) {
-        say(sentence->action, "It warned of %zu fault%s.", why_fault_count(why),
-            (why_fault_count(why) > 1u) ? "s" : "");
+    size_t in_init = 0u;
+    for (size_t i = 0u; i < why_fault_count(why); i++) {
+        in_init += why_did_not_trip(why_fault(why, i)) ? 1u : 0u;
+    }
+    const size_t warned = why_fault_count(why) - in_init;
+    if (warned > 0u) {
+        say(sentence->action, "It warned of %zu fault%s.", warned, words_plural(warned));
+    }
+    if (in_init > 0u) {
+        say(sentence->action, "%s%zu fault%s occurred in INIT, where nothing trips.", (warned > 0u) ? " " : "", in_init,
+            words_plural(in_init));
     }
     if (!why_was_engaged(why)) {
         say(sentence->outcome, "The autopilot was never engaged: the commands of the AI computer were not judged.");

@@ -29,7 +29,7 @@ const char *sentence_phrase(agv_fault_t fault);
  */
 uint64_t sentence_trip_us(const why_trip_t *trip);
 
-/** About a trip. @param opened_us when the safety output opened; WHY_NEVER: it stayed closed */
+/** About a trip. @param opened_us when the safety output opened; WHY_NEVER: it stayed closed; 0: it was open */
 void sentence_trip(sentence_t *sentence, const report_page_t *page, const why_trip_t *trip, uint64_t opened_us);
 
 /** About a run without a trip. @param end_us its duration */

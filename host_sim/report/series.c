@@ -241,12 +241,12 @@ uint64_t series_output_opened_us(const series_t *series, uint64_t trip_us) {
     bool is_open = true;
     for (size_t i = 0u; (i < output->count) && (output->changes[i].t_us < end_us); i++) {
         const series_change_t *change = &output->changes[i];
-        if ((change->t_us / US_PER_MS >= trip_us / US_PER_MS) && (change->a == 0u)) {
+        if ((change->t_us / US_PER_MS >= trip_us / US_PER_MS) && (change->a == 0u) && !is_open) {
             return change->t_us;
         }
         is_open = change->a == 0u;
     }
-    return is_open ? trip_us : UINT64_MAX;
+    return is_open ? 0u : UINT64_MAX;
 }
 
 const series_frame_t *series_frames(const series_t *series, uint64_t t_us, size_t *count) {

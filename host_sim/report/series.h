@@ -55,7 +55,7 @@ void series_end(series_t *series, uint64_t t_us);
 /** When the run ended. */
 uint64_t series_end_us(const series_t *series);
 
-/** When the safety output opened for a trip, or was open already: the trip's time. @return UINT64_MAX: it stayed closed */
+/** When the safety output opened for a trip, 0: it was open already. @return UINT64_MAX: it stayed closed */
 uint64_t series_output_opened_us(const series_t *series, uint64_t trip_us);
 
 /** The frames around a trip, or around what came soon after one, in the order of time. @return NULL: not kept */

@@ -42,7 +42,7 @@ function drawSteps(trip) {
     return make(`li${kind ? `.${kind}` : ""}${us === null ? ".open" : ""}`, make("b", name), ...texts.map((text) => make("span", text)));
   };
   const list = make("ol", point(trip.last_good_us, "last good frame"), point(trip.cause_us, "cause", "warn"), point(trip.t_us, "trip", "bad"),
-    point(trip.first_safe_us, "first safe frame", "", "none was sent"), point(trip.confirmed_us, "P confirmed", "", "not in this run"),
+    point(trip.first_safe_us, "first safe frame", "", "none was sent"), point(trip.confirmed_us, trip.confirmed_us === null ? `${trip.unconfirmed} confirmed` : "P confirmed", "", "not in this run"),
     point(trip.stopped_us, "stands", "", "not in this run"));
   list.id = "steps";
   return list;
@@ -71,7 +71,7 @@ function drawTrips(choose) {
 function drawFaults() {
   if (!data.faults.length) return make("section", make("h2", "Faults"), make("p", "None."));
   const rows = data.faults.map((fault) => [
-    make("span", make("code", fault.name), ...(fault.from_recording ? [make("span.soft", " (a recording cannot obey)")] : [])),
+    make("span", make("code", fault.name), make("span.soft", fault.from_recording ? " (a recording cannot obey)" : fault.no_trip ? " (in INIT: no trip)" : "")),
     make(`span.tag.${fault.class === "trip" ? "bad" : "warn"}`, fault.class === "trip" ? "trip" : "warning"),
     fault.phrase, seconds(inMs(fault.first_us)), String(fault.times), lasting(inMs(fault.active_us)) + (fault.active ? ", until the end" : "")]);
   return make("section", make("h2", "Faults"),
@@ -100,7 +100,7 @@ function faultsOf(message) {
     message.late > 0 ? `late ${message.late > 1 ? `${message.late} times, first ` : ""}at ${seconds(message.first_late_ms)}` : "",
     message.counter?.counts === "stuck" ? "alive counter stuck" : "",
     message.malformed > 0 ? `${message.malformed} malformed` : "",
-    ...message.alarms.map((alarm) => `${alarm.name} from ${seconds(alarm.first_ms)} on`),
+    ...message.alarms.map((alarm) => alarm.frames > 1 ? `${alarm.name} from ${seconds(alarm.first_ms)} on` : `${alarm.name} at ${seconds(alarm.first_ms)}`),
   ].filter(Boolean).join("; ");
 }
 

@@ -55,7 +55,74 @@ void test_a_message_that_never_came(void) {
     trip.last_good_us = WHY_NEVER;
     trip.next_us = WHY_NEVER;
     say();
-    TEST_ASSERT_EQUAL_STRING("steering_command (065h) never came. Its deadline is 125 ms.", sentence.cause);
+    TEST_ASSERT_EQUAL_STRING("steering_command (065h) never came. The deadline for the first one is 125 ms.",
+                             sentence.cause);
+    TEST_ASSERT_EQUAL_STRING("The vehicle stands because the AI computer never sent steering commands.",
+                             sentence.headline);
+    trip.reason = AGV_FAULT_EPS_HEARTBEAT_LOST;
+    say();
+    TEST_ASSERT_EQUAL_STRING("The vehicle stands because the EPS (power steering) was never heard.", sentence.headline);
+}
+
+void test_every_silence_of_a_message_that_never_came_has_words(void) {
+    trip.last_good_us = WHY_NEVER;
+    for (uint32_t fault = 0; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
+        if (why_row((agv_fault_t)fault)->kind == WHY_SILENCE) {
+            trip.reason = (agv_fault_t)fault;
+            say();
+            TEST_ASSERT_NOT_NULL(strstr(sentence.headline, " never "));
+        }
+    }
+}
+
+static void refuse(hal_can_frame_t frame) {
+    trip.was_heard = true;
+    trip.next_us = WHY_NEVER;
+    trip.refused = (why_refused_t){.count = 5, .first = {.t_us = 62009000u, .frame = frame}};
+    say();
+}
+
+void test_a_message_in_another_form(void) {
+    refuse((hal_can_frame_t){.id = 0x065, .length = 7});
+    TEST_ASSERT_EQUAL_STRING(
+        "The vehicle stands because steering_command (065h) came in a form that the protocol does not have.",
+        sentence.headline);
+    TEST_ASSERT_EQUAL_STRING(
+        "steering_command (065h) came for the last time at 61.984 s. Its deadline is 125 ms. Of its "
+        "frames 5 came with a length of 7, the first at 62.009 s.",
+        sentence.cause);
+}
+
+void test_a_command_that_was_withheld(void) {
+    refuse((hal_can_frame_t){.id = 0x065, .length = 8});
+    TEST_ASSERT_EQUAL_STRING(
+        "The vehicle stands because the gateway did not pass steering_command (065h) on, while the VCU "
+        "did not report autopilot.",
+        sentence.headline);
+    TEST_ASSERT_EQUAL_STRING_LEN("steering_command (065h) was passed on for the last time at 61.984 s.", sentence.cause,
+                                 68);
+}
+
+void test_a_counter_with_wrong_steps(void) {
+    trip.kind = WHY_STUCK;
+    trip.reason = AGV_FAULT_AI_HEARTBEAT_STUCK;
+    trip.wrong_steps = true;
+    say();
+    TEST_ASSERT_EQUAL_STRING(
+        "The vehicle stands because the alive counter of steering_command (065h) did not step by 1 "
+        "to 3.",
+        sentence.headline);
+    TEST_ASSERT_EQUAL_STRING_LEN("The alive counter of steering_command (065h) stepped by 1 to 3 for the last time at "
+                                 "61.984 s.",
+                                 sentence.cause, 91);
+}
+
+void test_a_vehicle_that_parks_at_standstill(void) {
+    config.park = AGV_PARK_AT_STANDSTILL;
+    say();
+    TEST_ASSERT_NOT_NULL(strstr(sentence.action,
+                                "the first of the safe commands: throttle 0, autopilot off, and gear P "
+                                "when the wheels stand, or after 3 s."));
 }
 
 void test_a_message_that_came_at_a_time_that_is_not_known(void) {
@@ -180,6 +247,8 @@ void test_a_vehicle_that_does_not_stop_is_not_said_to_stand(void) {
 void test_the_safety_output(void) {
     sentence_trip(&sentence, &page, &trip, trip.t_us);
     TEST_ASSERT_NOT_NULL(strstr(sentence.action, "The safety output was opened at once."));
+    sentence_trip(&sentence, &page, &trip, 0);
+    TEST_ASSERT_NOT_NULL(strstr(sentence.action, "The safety output was open already."));
     sentence_trip(&sentence, &page, &trip, trip.t_us + (500u * MS));
     TEST_ASSERT_NOT_NULL(strstr(sentence.action, "The safety output was opened 500 ms after the trip."));
 }
@@ -244,4 +313,23 @@ void test_no_trip_and_never_engaged(void) {
     TEST_ASSERT_EQUAL_STRING("It supervised 85.500 s of 86.000 s. The other 0.500 s it was in INIT.", sentence.cause);
     TEST_ASSERT_EQUAL_STRING("The autopilot was never engaged: the commands of the AI computer were not judged.",
                              sentence.outcome);
+}
+
+void test_a_fault_that_did_not_trip_in_init_is_no_warning(void) {
+    why_t *why = why_new(&config);
+    session_event_t event = {
+        .t_ms = 0, .recorded = {.kind = AGV_EVENT_STATE, .b = (uint8_t)AGV_STATE_INIT, .c = (uint8_t)AGV_FAULT_NONE}};
+    why_event(why, &event);
+    event.recorded =
+        (agv_event_t){.kind = AGV_EVENT_FAULT, .a = AGV_FAULT_EPS_TEMP_ABOVE_120, .b = AGV_CLASS_TRIP, .c = 1};
+    why_event(why, &event);
+    event.t_ms = 1000;
+    event.recorded = (agv_event_t){
+        .kind = AGV_EVENT_STATE, .a = (uint8_t)AGV_STATE_INIT, .b = (uint8_t)AGV_STATE_STANDBY, .c = AGV_FAULT_NONE};
+    why_event(why, &event);
+    why_end(why, 2000u * MS);
+    sentence_no_trip(&sentence, why, 2000u * MS);
+    TEST_ASSERT_TRUE(why_did_not_trip(why_fault(why, 0)));
+    why_free(why);
+    TEST_ASSERT_EQUAL_STRING("1 fault occurred in INIT, where nothing trips.", sentence.action);
 }

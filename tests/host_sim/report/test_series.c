@@ -290,6 +290,14 @@ void test_when_the_output_opened_for_a_trip(void) {
     TEST_ASSERT_EQUAL_UINT64(20000 * (uint64_t)MS, series_output_opened_us(series, 20000 * (uint64_t)MS));
 }
 
+void test_an_output_that_was_open_before_the_trip(void) {
+    output(0, 0);
+    state(0, AGV_STATE_INIT, AGV_STATE_TRIPPED, AGV_FAULT_OUTPUT_FEEDBACK);
+    end(1 * (uint64_t)S);
+    TEST_ASSERT_EQUAL_UINT64(0, series_output_opened_us(series, 0));
+    TEST_ASSERT_EQUAL_UINT64(0, series_output_opened_us(series, 500 * MS));
+}
+
 void test_the_end_is_never_before_the_last_frame(void) {
     wheels(50 * MS, 1);
     end(40 * MS);
