@@ -41,6 +41,15 @@ void session_start(session_t *session, const agv_config_t *config, uint64_t t_ms
     session->observers[0].fn(session->observers[0].ctx, &event);
 }
 
+void session_stop(session_t *session, uint64_t t_ms) {
+    (void)session;
+    (void)t_ms;
+}
+
+agv_counters_t session_counters(const session_t *session) {
+    return session->before;
+}
+
 void session_frame(session_t *session, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_ms) {
     (void)session;
     (void)side;
