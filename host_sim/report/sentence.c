@@ -116,7 +116,7 @@ static void say_phrase(char text[SENTENCE_SIZE], const why_trip_t *trip) {
     if (trip->wrong_steps) {
         say(text, "the alive counter of ");
         say_message(text, trip);
-        say(text, " did not step by 1 to 3");
+        say(text, " did not always step by 1 to 3");
     } else if (why_was_withheld(trip)) {
         say(text, "the gateway did not pass ");
         say_message(text, trip);

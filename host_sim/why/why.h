@@ -89,9 +89,10 @@ typedef struct {
     bool from_recording; /**< as in why_trip_t, each time */
 } why_fault_t;
 
-/** Whether a fault is one that trips, and did not, because it occurred in INIT. */
+/** Whether a fault is one that trips, and did not, because it occurred in INIT, where only unresettable ones do. */
 static inline bool why_did_not_trip(const why_fault_t *fault) {
-    return fault->in_init && (fault->fault_class == AGV_CLASS_TRIP);
+    const bool trips = (agv_fault_flags((uint32_t)fault->fault) & AGV_FAULT_FLAG_UNRESETTABLE) != 0u;
+    return fault->in_init && (fault->fault_class == AGV_CLASS_TRIP) && !trips;
 }
 
 /** The five states, in the order of a run. */

@@ -108,10 +108,9 @@ void test_a_counter_with_wrong_steps(void) {
     trip.reason = AGV_FAULT_AI_HEARTBEAT_STUCK;
     trip.wrong_steps = true;
     say();
-    TEST_ASSERT_EQUAL_STRING(
-        "The vehicle stands because the alive counter of steering_command (065h) did not step by 1 "
-        "to 3.",
-        sentence.headline);
+    TEST_ASSERT_EQUAL_STRING("The vehicle stands because the alive counter of steering_command (065h) did not always "
+                             "step by 1 to 3.",
+                             sentence.headline);
     TEST_ASSERT_EQUAL_STRING_LEN("The alive counter of steering_command (065h) stepped by 1 to 3 for the last time at "
                                  "61.984 s.",
                                  sentence.cause, 91);

@@ -131,6 +131,14 @@ void test_faults_in_the_order_of_their_first_time(void) {
     TEST_ASSERT_EQUAL_UINT64(800000, why_fault(why, 1)->active_us);
 }
 
+void test_in_init_only_an_unresettable_fault_trips(void) {
+    feed_state(why, 0, AGV_STATE_INIT, AGV_FAULT_NONE, 0);
+    feed_fault(why, AGV_FAULT_EPS_TEMP_ABOVE_120, AGV_CLASS_TRIP, true, 100);
+    feed_fault(why, AGV_FAULT_OUTPUT_FEEDBACK, AGV_CLASS_TRIP, true, 200);
+    TEST_ASSERT_TRUE(why_did_not_trip(why_fault(why, 0)));
+    TEST_ASSERT_FALSE(why_did_not_trip(why_fault(why, 1)));
+}
+
 void test_a_fault_that_is_raised_again_with_another_class_is_one_time(void) {
     feed_fault(why, AGV_FAULT_AI_HEARTBEAT_LOST, AGV_CLASS_WARN, true, 100);
     feed_fault(why, AGV_FAULT_AI_HEARTBEAT_LOST, AGV_CLASS_TRIP, true, 300);
