@@ -18,7 +18,7 @@ setup_file() {
 
 @test "man pages and completion are installed, and the examples of the help are found" {
     compgen -G "$PREFIX/share/man/man1/host_sim.1*"
-    [ "$(find "$PREFIX/share/man/man1" -name 'host_sim-*' | wc -l)" -eq "$("$PREFIX/bin/host_sim" --help | grep -c '^  [a-z]* \{2,\}')" ]
+    [ "$(find "$PREFIX/share/man/man1" -name 'host_sim-*' | wc -l)" -eq "$("$PREFIX/bin/host_sim" --help | grep -c '^  [a-z][a-z]* \{2,\}')" ]
     [ -s "$PREFIX/share/bash-completion/completions/host_sim" ]
     [ -s "$PREFIX/share/zsh/site-functions/_host_sim" ]
     [ -s "$PREFIX/share/fish/vendor_completions.d/host_sim.fish" ]
