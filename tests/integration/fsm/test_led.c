@@ -113,3 +113,14 @@ void test_the_led_shows_shadow_mode(void) {
     }
     TEST_ASSERT_TRUE(lit_ms > 0 && lit_ms < 500); /* healthy would be 1000 */
 }
+
+/* Shows: LED-1 */
+void test_healthy_is_1_s_on_and_1_s_off(void) {
+    fixture_start(&f);
+    TEST_ASSERT_TRUE(f.hal.led.on); /* the pattern begins with the start */
+    for (unsigned ms = 1; ms < 7000; ms++) {
+        fixture_run(&f, 1);
+        TEST_ASSERT_EQUAL_INT(ms % 2000 < 1000, f.hal.led.on);
+    }
+    expect_led(&f, 0);
+}

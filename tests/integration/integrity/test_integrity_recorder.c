@@ -262,3 +262,18 @@ void test_a_flipped_bit_in_the_head_of_the_recorder_changes_no_decision(void) {
         expect_state(&f, AGV_STATE_STANDBY);
     }
 }
+
+/* A change back to TRIPPED after a withdrawn confirmation is the same trip. */
+/* Shows: INT-3, FSM-5 */
+void test_a_confirmation_that_comes_and_goes_is_no_trip(void) {
+    agv_event_t event = {0};
+    walk_to_safe(&f);
+    for (unsigned i = 0; i < 5; i++) {
+        fixture_gear(&f, GEAR_D);
+        expect_state_after(&f, 50, AGV_STATE_TRIPPED);
+        fixture_gear(&f, GEAR_P);
+        fixture_run(&f, 50);
+    }
+    TEST_ASSERT_TRUE(agv_recorder_get_trip(&f.recorder, 0, &event));
+    TEST_ASSERT_FALSE(agv_recorder_get_trip(&f.recorder, 1, &event));
+}
