@@ -8,9 +8,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "agv/names.h"
 #include "analysis/analysis.h"
 #include "common/interrupt.h"
+#include "common/missing.h"
 #include "config/config_text.h"
 #include "hal_linux/linux_can.h"
 #include "hal_linux/linux_loop.h"
@@ -224,14 +224,11 @@ static bool run(live_t *live) {
 
 static void print_not_supervised(const live_t *live) {
     static const char label[] = "NOT SUPERVISED: ";
-    const char *between = ", missing: ";
+    char words[MISSING_TEXT_SIZE];
     text_t text = {.used = 0u};
     text_add(&text, "never left INIT");
-    for (uint8_t bit = 0u; agv_missing_name(bit) != NULL; bit++) {
-        if (((live->missing >> bit) & 1u) != 0u) {
-            text_add(&text, "%s%s", between, agv_missing_name(bit));
-            between = ", ";
-        }
+    if (live->missing != 0u) {
+        text_add(&text, ", missing: %s", missing_text(live->missing, words));
     }
     why_text_line(label, (int)strlen(label), text.bytes);
 }

@@ -136,7 +136,7 @@ struct why {
 };
 
 /** What a message does whose alive counter has to increment, and does not. */
-#define WHY_WRONG_STEPS "stepped its alive counter otherwise than by 1 to 3"
+#define WHY_WRONG_STEPS "did not step its alive counter by 1 to 3"
 
 /** Whether the AI computer sends it. */
 static inline bool why_is_command(agv_message_t message) {

@@ -315,7 +315,7 @@ static void say_no_beat(text_t *text, const why_t *why, agv_message_t number) {
         text_add(text, "%03Xh never received", id);
     } else if (message->repeats) {
         text_add(text,
-                 message->steps ? "alive counter of %03Xh steps otherwise than by 1 to 3"
+                 message->steps ? "alive counter of %03Xh does not step by 1 to 3"
                                 : "alive counter of %03Xh stuck at %u",
                  id, message->counter.value);
     } else {

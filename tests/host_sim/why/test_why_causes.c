@@ -238,9 +238,8 @@ void test_a_wrong_step_counts_as_stuck_where_the_counter_has_to_increment(void) 
     feed_frame(why, HAL_CAN_VEHICLE, 0x067, "\x01\0\0\0\0\0\0", 1030);
     const why_trip_t *trip = trip_by(AGV_FAULT_EPS_HEARTBEAT_STUCK, 1061);
     TEST_ASSERT_EQUAL_UINT64(1020000, trip->cause_us);
-    check_words(trip,
-                "067h steering_status stepped its alive counter otherwise than by 1 to 3 from 1.020 s on [20 00 00 "
-                "00 00 00 00 00]: last right step at 1.010 s, deadline 50 ms");
+    check_words(trip, "067h steering_status did not step its alive counter by 1 to 3 from 1.020 s on [20 00 00 "
+                      "00 00 00 00 00]: last right step at 1.010 s, deadline 50 ms");
 }
 
 void test_a_mode_of_the_eps_counts_from_the_engagement_on(void) {
