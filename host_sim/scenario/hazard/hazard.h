@@ -93,15 +93,16 @@ typedef struct {
 
 /** The supervisor's own safe commands, as the wire shows them. */
 typedef struct {
-    bool ready;          /**< the safety output was closed, with no safe commands */
-    bool tripped;        /**< they came since */
-    bool parks;          /**< the first 168h P */
-    bool parked;         /**< the same, since a trip or a restart */
-    uint64_t first_ms;   /**< of the first since then */
-    uint64_t since_ms;   /**< the trip was no earlier: before it the transmitter may have taken nothing for a while */
-    uint64_t stalled_ms; /**< it took nothing at that time */
-    uint64_t free_ms;    /**< it took frames at that time */
-    uint64_t last_ms;    /**< of the last 43Fh with the whole safe payload */
+    bool ready;        /**< the safety output was closed, with no safe commands */
+    bool tripped;      /**< they came since */
+    bool parks;        /**< the first 168h P */
+    bool parked;       /**< the same, since a trip or a restart */
+    uint64_t first_ms; /**< of the first since then */
+    uint64_t
+        since_ms; /**< the trip was no earlier: the transmitter may have taken nothing before, or the supervisor hung */
+    uint64_t stalled_ms;      /**< it took nothing at that time, or the supervisor hung */
+    uint64_t free_ms;         /**< it took frames at that time */
+    uint64_t last_ms;         /**< of the last 43Fh with the whole safe payload */
     hazard_button_t button;   /**< remote button 1, as the operator really holds it */
     hazard_button_t reported; /**< the same, as 363h reports it */
     hazard_button_t pin;      /**< the push button, with its bouncing */

@@ -192,13 +192,13 @@ static void follow_output(hazard_t *hazard, bool was_closed) {
     }
 }
 
-/** The first frame after a stall leaves some ms after its end. */
+/** The first frame after a stall leaves some ms after its end. After a hang, a trip is as old as the frame that caused it. */
 static void follow_transmitter(hazard_t *hazard) {
     hazard_trip_t *trip = &hazard->trip;
     scenario_controller_t controller;
 
     scenario_testbed_controller(hazard->testbed, HAL_CAN_VEHICLE, &controller);
-    if (controller.is_stalled) {
+    if (controller.is_stalled || hazard->view.is_halted) {
         trip->stalled_ms = hazard->t_ms;
     } else if (hazard->t_ms - trip->stalled_ms > IN_FLIGHT_MS) {
         trip->free_ms = hazard->t_ms;

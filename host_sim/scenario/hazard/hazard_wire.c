@@ -64,12 +64,17 @@ static void note(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV
     }
 }
 
-/** At an engagement the vehicle uses the last throttle command. A stalled transmitter sends no other, and opens the output. */
+/**
+ * At an engagement the vehicle uses the last throttle command. A stalled transmitter sends no other, and opens the output; nor does
+ * a supervisor that hangs, until its watchdog resets it.
+ */
 static void check_newest_throttle(hazard_t *hazard) {
     const uint32_t deadline_ms = hazard->config->throttle_command_timeout_ms;
 
-    if (hazard->gateway && hazard->closed && !hazard->trip.tripped && !hazard_is_stalled(hazard) &&
-        hazard->throttle_is_newest && (hazard->t_ms - hazard->throttle_ms > deadline_ms + REENGAGE_MS)) {
+    const bool can_send = !hazard_is_stalled(hazard) && !hazard->view.is_halted;
+
+    if (hazard->gateway && hazard->closed && !hazard->trip.tripped && can_send && hazard->throttle_is_newest &&
+        (hazard->t_ms - hazard->throttle_ms > deadline_ms + REENGAGE_MS)) {
         hazard_found(hazard, HAZARD_FALSE_COMMAND, "an old throttle command is the latest one at an engagement");
     }
 }

@@ -480,6 +480,8 @@ void test_h3_an_old_throttle(void) {
                                 "  - {at_ms: 3300, operator: disengage}\n  - {at_ms: 3450, operator: engage}\n";
     const stub_t opens = {.gateway = true, .passes = 1u, .only_engaged = true, .open_ms = TRIP_MS + 500};
     expect_none(&opens, stalled);
+    expect_none(&forgets, "  - {at_ms: 3000, operator: disengage}\n  - {at_ms: 3990, supervisor: hang, for_ms: 50}\n"
+                          "  - {at_ms: 4000, operator: engage}\n");
 }
 
 void test_h4_an_unconfirmed_safe_state(void) {
@@ -757,9 +759,9 @@ void test_h8_park_in_motion(void) {
     expect_none(&PASSING, asks);
 }
 
-/** P after park_timeout_ms: from the trip on, which a transmitter that took nothing may hide; a flipped bit is no other trip. */
+/** P after park_timeout_ms: from the trip on, which a stalled transmitter or a hang may hide; a flipped bit is no other trip. */
 void test_h8_the_time_counts_from_the_trip(void) {
-    const char *const config = "park: at_standstill\n  park_timeout_ms: 500\n";
+    const char *const config = "park: at_standstill\n  park_timeout_ms: 500\n  watchdog_period_ms: 600\n";
     const char *const full = "  - {at_ms: 2000, supervisor: fill_queue}\n"
                              "  - {at_ms: 2990, supervisor: free_queue}\n";
     const stub_t parks = {.safe_ms = TRIP_MS, .parks_ms = TRIP_MS + 50, .setting = config};
@@ -767,6 +769,7 @@ void test_h8_the_time_counts_from_the_trip(void) {
         .rolls = true, .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 5000, .parks_ms = TRIP_MS + 550, .setting = config};
     expect_hazard(HAZARD_PARK, "P comes in motion", &parks, "");
     expect_none(&parks, full);
+    expect_none(&parks, "  - {at_ms: 2500, supervisor: hang, for_ms: 490}\n");
     expect_none(&waits, "  - {at_ms: 3300, supervisor: flip_bit, bit: 1}\n");
 }
 
