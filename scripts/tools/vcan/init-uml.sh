@@ -18,7 +18,7 @@ mount -t tmpfs -o mode=755 tmpfs /run || fail "the folder /run is missing"
 mkdir -p /run/with-vcan/session /run/with-vcan/bin /run/with-vcan/kmod/lib
 mount --bind . /run/with-vcan/session || fail "the session cannot be mounted"
 ln -s "$modules" /run/with-vcan/kmod/lib/modules
-modprobe -C /dev/null -d /run/with-vcan/kmod -a vcan can-raw can-bcm can-gw sch_tbf sch_netem ||
+modprobe -C /dev/null -d /run/with-vcan/kmod -a vcan can-raw can-bcm can-gw sch_tbf sch_netem sch_plug ||
     fail "the modules for CAN cannot be loaded"
 for line in 0 1 2 3; do
     busybox stty -F "/dev/ttyS$line" raw -echo || fail "the line $line is missing"

@@ -7,7 +7,7 @@
 cache=$ROOT/build/vcan
 umask 022 # for all users
 init=$ROOT/scripts/tools/vcan/init.sh
-modules=(virtio_pci virtio_console 9p 9pnet_virtio vcan can-raw can-bcm can-gw can-dev sch_tbf sch_netem)
+modules=(virtio_pci virtio_console 9p 9pnet_virtio vcan can-raw can-bcm can-gw can-dev sch_tbf sch_netem sch_plug)
 
 fail() {
     echo "with-vcan: $*" >&2
