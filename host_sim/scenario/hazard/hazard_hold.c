@@ -114,10 +114,15 @@ void hazard_hold_anew(hazard_t *hazard) {
     trip_now(hazard, FRESH_MS);
 }
 
-/** A supervisor that detects a flipped bit trips again, too. If it does not detect it, it still holds the angle of the trip. */
+static bool is_in_date(const hazard_t *hazard, const hazard_first_t *first) {
+    return first->any && (hazard->t_ms - first->since_ms <= in_date_ms(hazard));
+}
+
+/** A supervisor that detects a flipped bit trips again, too. If it does not detect it, it still holds the angle of before. */
 void hazard_hold_perhaps_anew(hazard_t *hazard) {
     hazard_hold_t *hold = &hazard->hold;
     const hazard_range_t before = hold->at_trip;
+    const hazard_first_t first = hold->first;
     const bool is_held = hold->has_trip && !hold->is_dropped && (hazard->t_ms - hold->trip_ms <= in_date_ms(hazard));
 
     trip_now(hazard, FRESH_MS);
@@ -125,10 +130,14 @@ void hazard_hold_perhaps_anew(hazard_t *hazard) {
         extend_range(&hold->at_trip, before.low_ddeg);
         extend_range(&hold->at_trip, before.high_ddeg);
     }
+    if (is_in_date(hazard, &first)) {
+        extend_range(&hold->at_trip, first.range.low_ddeg);
+        extend_range(&hold->at_trip, first.range.high_ddeg);
+    }
 }
 
 static bool is_of_first(const hazard_t *hazard, const hazard_first_t *first, int32_t held_ddeg) {
-    return first->any && (hazard->t_ms - first->since_ms <= in_date_ms(hazard)) && is_within(&first->range, held_ddeg);
+    return is_in_date(hazard, first) && is_within(&first->range, held_ddeg);
 }
 
 /** Whether the angle is one that may be held. */
