@@ -6,6 +6,9 @@ static const uint8_t first_ms[AGV_COMMAND_COUNT] = {[AGV_MSG_TURN_SIGNAL_COMMAND
                                                     [AGV_MSG_THROTTLE_COMMAND] = 33u,
                                                     [AGV_MSG_STEERING_COMMAND] = 25u};
 
+/* Longer than a frame at 125 kbit/s with its errors. */
+#define SHIFT_MS 3u
+
 void agv_scheduler_restart(agv_scheduler_t *scheduler, uint32_t now_ms) {
     for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
         scheduler->slots[i].next_ms = now_ms + first_ms[i];
@@ -30,16 +33,21 @@ uint32_t agv_scheduler_due(agv_scheduler_t *scheduler, uint32_t now_ms, uint32_t
     return slots;
 }
 
+void agv_scheduler_shift(agv_scheduler_t *scheduler, uint32_t command) {
+    scheduler->slots[command].next_ms += SHIFT_MS;
+}
+
 /* The bit is cleared when the gap is over, because the microseconds wrap: later differences would be wrong. */
 bool agv_scheduler_override_due(agv_scheduler_t *scheduler, uint32_t now_us, uint32_t gap_ms, uint32_t command) {
     if ((now_us - scheduler->slots[command].overridden_us) >= (gap_ms * 1000u)) {
-        scheduler->override_recent &= ~agv_message_bit(command);
+        scheduler->override_recent &= (uint8_t)~agv_message_bit(command);
     }
-    return (scheduler->override_waits & ~scheduler->override_recent & agv_message_bit(command)) != 0u;
+    return ((uint32_t)scheduler->override_waits & ~(uint32_t)scheduler->override_recent & agv_message_bit(command)) !=
+           0u;
 }
 
 bool agv_scheduler_override(agv_scheduler_t *scheduler, uint32_t now_us, uint32_t gap_ms, uint32_t command) {
-    scheduler->override_waits |= agv_message_bit(command);
+    scheduler->override_waits |= (uint8_t)agv_message_bit(command);
     return agv_scheduler_override_due(scheduler, now_us, gap_ms, command);
 }
 
@@ -47,12 +55,12 @@ void agv_scheduler_overridden(agv_scheduler_t *scheduler, const agv_timers_t *ti
     agv_slot_t *const slot = &scheduler->slots[command];
     slot->next_ms = timers->now_ms + (agv_message_cycle_ms(command) / 2u);
     slot->overridden_us = timers->now_us;
-    scheduler->override_recent |= agv_message_bit(command);
-    scheduler->override_waits &= ~agv_message_bit(command);
+    scheduler->override_recent |= (uint8_t)agv_message_bit(command);
+    scheduler->override_waits &= (uint8_t)~agv_message_bit(command);
 }
 
 void agv_scheduler_answered(agv_scheduler_t *scheduler, uint32_t command) {
-    scheduler->override_waits &= ~agv_message_bit(command);
+    scheduler->override_waits &= (uint8_t)~agv_message_bit(command);
 }
 
 void agv_scheduler_discard(agv_scheduler_t *scheduler) {

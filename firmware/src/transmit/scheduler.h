@@ -22,8 +22,8 @@ typedef struct {
 /** All slots; bit n of a set is the command n. */
 typedef struct {
     agv_slot_t slots[AGV_COMMAND_COUNT];
-    uint32_t override_recent; /**< the last override is less than the gap ago */
-    uint32_t override_waits;  /**< an override came too soon and is sent later */
+    uint8_t override_recent; /**< the last override is less than the gap ago */
+    uint8_t override_waits;  /**< an override came too soon and is sent later */
 } agv_scheduler_t;
 
 /**
@@ -40,6 +40,9 @@ void agv_scheduler_restart_slot(agv_scheduler_t *scheduler, uint32_t now_ms, uin
  * @return 0: not due; otherwise the number of slots since the last call, including missed ones
  */
 uint32_t agv_scheduler_due(agv_scheduler_t *scheduler, uint32_t now_ms, uint32_t command);
+
+/** Shift the grid of a command by 3 ms: a sender of the same identifier in step with it collides with each of its frames. */
+void agv_scheduler_shift(agv_scheduler_t *scheduler, uint32_t command);
 
 /**
  * Request an override of another sender's command.

@@ -19,6 +19,12 @@ enum { STATUS_ON_WIRE_MS = 2 };
 /* A tick that comes later than this after the last one is late. */
 enum { TICK_USUAL_MS = 2 };
 
+/*
+ * A foreign command that comes alone counts ALONE_FRAME, one that follows in the same or next ms ends the count, as does the
+ * time. From ALONE_ENOUGH on, the sender repeats its command with pauses in which an override finds room.
+ */
+enum { ALONE_FRAME = 4, ALONE_ENOUGH = 8, ALONE_MAX = 16, LAST_TICK_SHIFT = 4 };
+
 void agv_transmitter_start(agv_transmitter_t *transmitter, uint32_t now_ms) {
     transmitter->status_due_ms = now_ms;
     transmitter->status_ms = now_ms - (uint32_t)STATUS_ON_WIRE_MS - 1u;
@@ -177,16 +183,35 @@ static void override(agv_transmitter_t *transmitter, const agv_tx_orders_t *orde
     agv_scheduler_overridden(&transmitter->scheduler, orders->timers, command);
 }
 
+/* Whether another sender's command that differs came since the tick before the last one. */
+static bool came_lately(const agv_transmitter_t *transmitter, uint32_t command) {
+    const uint32_t lately = (uint32_t)transmitter->foreign_lately >> LAST_TICK_SHIFT;
+    return ((transmitter->foreign_lately | lately) & agv_message_bit(command)) != 0u;
+}
+
+static void note_foreign(agv_transmitter_t *transmitter, uint32_t command) {
+    const bool alone = !came_lately(transmitter, command);
+    const uint8_t count = transmitter->alone[command];
+    if (!alone) {
+        transmitter->alone[command] = 0u;
+    } else if (count < (uint8_t)ALONE_MAX) {
+        transmitter->alone[command] = (uint8_t)(count + (uint8_t)ALONE_FRAME);
+    } else {
+        /* enough */
+    }
+    transmitter->foreign_lately |= (uint8_t)agv_message_bit(command);
+}
+
 void agv_transmitter_answer(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command,
                             const uint8_t *data) {
     const bool differs = (data == NULL) || !is_same_command(transmitter, orders, command, data);
     if (!differs || ((wanted_commands(orders) & agv_message_bit(command)) == 0u)) {
         return;
     }
-    transmitter->foreign_lately |= (uint8_t)agv_message_bit(command);
+    note_foreign(transmitter, command);
     if (agv_scheduler_override(&transmitter->scheduler, orders->timers->now_us, orders->config->override_gap_ms,
                                command) &&
-        !orders->passive) {
+        (!orders->passive || (transmitter->alone[command] >= (uint8_t)ALONE_ENOUGH))) {
         override(transmitter, orders, command);
     }
 }
@@ -258,10 +283,23 @@ void agv_transmitter_pass(agv_transmitter_t *transmitter, const agv_tx_orders_t 
     send_passed(transmitter, orders, message);
 }
 
-/* Whether no command that has to be overridden came in the last ms. After a late tick, those since the last one are older. */
+/*
+ * Whether an override finds room at a tick: no such command came in the last ms, and none is to be expected. After a late tick,
+ * those since the last one are older.
+ */
 static bool is_quiet(const agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command) {
-    return ((transmitter->foreign_lately & agv_message_bit(command)) == 0u) ||
-           ((orders->timers->now_ms - transmitter->tick_ms) > (uint32_t)TICK_USUAL_MS);
+    const bool came = (transmitter->foreign_lately & agv_message_bit(command)) != 0u;
+    const bool late = (orders->timers->now_ms - transmitter->tick_ms) > (uint32_t)TICK_USUAL_MS;
+    return late || (!came && (transmitter->alone[command] < (uint8_t)ALONE_ENOUGH));
+}
+
+static void forget_foreign(agv_transmitter_t *transmitter) {
+    for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
+        if ((transmitter->alone[i] != 0u) && !came_lately(transmitter, i)) {
+            transmitter->alone[i]--;
+        }
+    }
+    transmitter->foreign_lately = (uint8_t)((uint32_t)transmitter->foreign_lately << LAST_TICK_SHIFT);
 }
 
 static void tick_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command, uint32_t wanted) {
@@ -275,6 +313,9 @@ static void tick_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orde
     }
     if (slots > 1u) {
         transmitter->report.skipped_slots += slots - 1u;
+    }
+    if (orders->passive && (slots != 0u)) {
+        agv_scheduler_shift(&transmitter->scheduler, command);
     }
     if (foreign && (!orders->passive || is_quiet(transmitter, orders, command))) {
         override(transmitter, orders, command);
@@ -369,7 +410,7 @@ void agv_transmitter_tick(agv_transmitter_t *transmitter, const agv_tx_orders_t 
         }
     }
     transmitter->wanted_before = (uint8_t)wanted;
-    transmitter->foreign_lately = 0u;
+    forget_foreign(transmitter);
     transmitter->tick_ms = orders->timers->now_ms;
     agv_transmitter_status(transmitter, orders);
 }

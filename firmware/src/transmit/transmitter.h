@@ -53,12 +53,13 @@ typedef struct {
     agv_tx_report_t report;
     uint8_t kept_data[AGV_MSG_COUNT][AGV_DLC];
     uint8_t wanted_before;  /**< own commands that were sent periodically at the last tick */
-    uint8_t foreign_lately; /**< commands of other senders that differ, since the last tick */
-    uint8_t passed_lately;  /**< commands that were forwarded less than half their cycle ago */
-    bool status_again;      /**< the last status frame may have been discarded with the waiting frames */
-    bool throttle_0_waits;  /**< the 075h at the end of an engagement waits for the HAL */
-    uint8_t alive_counter;  /**< of the own 43Fh */
-    uint8_t status_counter; /**< alive counter of the status frame */
+    uint8_t foreign_lately; /**< commands of other senders that differ, since the last tick; upper half: before it */
+    uint8_t alone[AGV_COMMAND_COUNT]; /**< whether they lately came alone, or in bursts */
+    uint8_t passed_lately;            /**< commands that were forwarded less than half their cycle ago */
+    bool status_again;                /**< the last status frame may have been discarded with the waiting frames */
+    bool throttle_0_waits;            /**< the 075h at the end of an engagement waits for the HAL */
+    uint8_t alive_counter;            /**< of the own 43Fh */
+    uint8_t status_counter;           /**< alive counter of the status frame */
 } agv_transmitter_t;
 
 /** Inputs of the transmitter, from the supervisor at each call. */
@@ -96,8 +97,9 @@ void agv_transmitter_burst(agv_transmitter_t *transmitter, const agv_tx_orders_t
 
 /**
  * Override another sender's command, now or when override_gap_ms is over, if the own one is sent in this state and
- * differs (TOP-1). While the controller is error-passive, the override waits for the end of a ms in which no such frame came:
- * between frames that follow each other without a gap it would collide each time, up to bus-off.
+ * differs (TOP-1). While the controller is error-passive, the override is sent right behind a frame of a sender that pauses
+ * for 2 ms or more between its frames. Otherwise it waits for the end of a ms in which no such frame came: between frames that
+ * follow each other without a gap it would collide each time, up to bus-off.
  * @param data its payload; NULL if it is malformed, which always counts as different
  */
 void agv_transmitter_answer(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command,

@@ -52,6 +52,26 @@ void test_a_late_step_moves_no_slot(void) {
     expect_next(0x075, trip_ms, 233);
 }
 
+/* A sender of the same identifier in step with the supervisor would collide with each of its frames. */
+/* Shows: TIM-1, SUP-7, ERROR_PASSIVE */
+void test_while_error_passive_each_cycle_is_3_ms_longer(void) {
+    walk_to_tripped(&f);
+    const uint32_t trip_ms = f.now_ms;
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_PASSIVE);
+    fixture_forget_sent(&f);
+    fixture_run(&f, 210);
+    TEST_ASSERT_EQUAL_UINT32(203, fixture_nth_sent(&f, 0x43F, 1)->time_ms - trip_ms);
+    TEST_ASSERT_EQUAL_UINT32(169, fixture_nth_sent(&f, 0x168, 1)->time_ms - trip_ms);
+    TEST_ASSERT_EQUAL_UINT32(136, fixture_nth_sent(&f, 0x075, 1)->time_ms - trip_ms);
+    TEST_ASSERT_EQUAL_UINT32(53, fixture_nth_sent(&f, 0x065, 1)->time_ms - trip_ms);
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    fixture_forget_sent(&f);
+    fixture_run(&f, 200);
+    TEST_ASSERT_EQUAL_UINT32(306, fixture_nth_sent(&f, 0x43F, 0)->time_ms - trip_ms);
+    TEST_ASSERT_EQUAL_UINT32(406, fixture_nth_sent(&f, 0x43F, 1)->time_ms - trip_ms);
+    TEST_ASSERT_EQUAL_UINT32(0, skipped());
+}
+
 /* Slots in states that send nothing do not count as skipped. */
 /* Shows: TIM-1 */
 void test_nothing_is_skipped_in_normal_operation(void) {

@@ -104,6 +104,61 @@ void test_while_the_controller_is_error_passive_an_override_waits_for_a_quiet_ti
     expect_answered_in_this_call(0x168, "error-active again");
 }
 
+/* Error-passive since the trip; another sender commands a gear every 2 ms, seven times. */
+static void passive_with_a_sender_that_pauses(void) {
+    tripped();
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_PASSIVE);
+    settle();
+    const uint32_t sent[7] = {0, 1, 1, 1,
+                              2, 2, 2}; /* the first override at a quiet tick, the next one behind a frame */
+    for (unsigned i = 0; i < 7u; i++) {
+        foreign_gear(1);
+        TEST_ASSERT_EQUAL_UINT32(sent[i], fixture_count_sent(&f, 0x168));
+        fixture_run(&f, 2);
+    }
+    fixture_forget_sent(&f);
+}
+
+/* At a tick the override would meet the next frame of such a sender again and again. */
+/* Shows: TOP-1, FSM-3, SUP-7, ERROR_PASSIVE */
+void test_while_error_passive_a_sender_that_pauses_is_overridden_behind_its_frames(void) {
+    passive_with_a_sender_that_pauses();
+    foreign_gear(1);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168)); /* 6 ms after the last override */
+    foreign_signals(0x30);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x43F)); /* its first frame may be the head of a burst */
+}
+
+/* Shows: TOP-1, ERROR_PASSIVE */
+void test_while_error_passive_the_last_frame_of_such_a_sender_is_overridden_too(void) {
+    passive_with_a_sender_that_pauses();
+    fixture_run(&f, 9); /* the last frame came 11 ms ago */
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+}
+
+static void expect_override_behind_a_burst(uint32_t gap_ms) {
+    passive_with_a_sender_that_pauses();
+    fixture_run(&f, 3);
+    foreign_gear(1);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    fixture_run(&f, gap_ms);
+    foreign_gear(1);
+    fixture_run(&f, 4 - gap_ms);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    fixture_run(&f, 1); /* 5 ms after the last override */
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
+}
+
+/* Shows: TOP-1, ERROR_PASSIVE */
+void test_while_error_passive_a_burst_after_single_frames_is_overridden_at_its_end(void) {
+    for (uint32_t gap_ms = 0; gap_ms < 2u; gap_ms++) {
+        fixture_init(&f);
+        expect_override_behind_a_burst(gap_ms);
+    }
+}
+
 /* Frames from the time before a late tick are over. */
 /* Shows: TOP-1, ERROR_PASSIVE */
 void test_while_error_passive_a_late_tick_overrides_what_came_before_it(void) {

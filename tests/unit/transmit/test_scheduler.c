@@ -99,6 +99,21 @@ void test_a_late_frame_misses_no_slot(void) {
     TEST_ASSERT_EQUAL_UINT32(0, skipped);
 }
 
+/* Shows: TIM-1, TIM-2 */
+TEST_CASE(0)
+TEST_CASE(0xFFFFFFB0)
+void test_a_grid_that_is_shifted_goes_on_3_ms_later(uint32_t start_ms) {
+    uint32_t skipped = 0;
+    restart(start_ms);
+    TEST_ASSERT_TRUE(due(AGV_MSG_STEERING_COMMAND, start_ms + 25, &skipped));
+    agv_scheduler_shift(&scheduler, AGV_MSG_STEERING_COMMAND);
+    TEST_ASSERT_FALSE(due(AGV_MSG_STEERING_COMMAND, start_ms + 52, &skipped));
+    TEST_ASSERT_TRUE(due(AGV_MSG_STEERING_COMMAND, start_ms + 53, &skipped));
+    TEST_ASSERT_TRUE(due(AGV_MSG_STEERING_COMMAND, start_ms + 78, &skipped));
+    TEST_ASSERT_TRUE(due(AGV_MSG_THROTTLE_COMMAND, start_ms + 33, &skipped));
+    TEST_ASSERT_EQUAL_UINT32(0, skipped);
+}
+
 /* FSM-1, park at standstill: the first P comes in between. */
 void test_a_slot_that_begins_later_has_its_own_grid(void) {
     uint32_t skipped = 0;
