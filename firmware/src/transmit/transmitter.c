@@ -23,7 +23,10 @@ enum { TICK_USUAL_MS = 2 };
  * A foreign command that comes alone counts ALONE_FRAME, one that follows in the same or next ms ends the count, as does the
  * time. From ALONE_ENOUGH on, the sender repeats its command with pauses in which an override finds room.
  */
-enum { ALONE_FRAME = 4, ALONE_ENOUGH = 8, ALONE_MAX = 16, LAST_TICK_SHIFT = 4 };
+#define ALONE_FRAME 4u
+#define ALONE_ENOUGH 8u
+#define ALONE_MAX 16u
+#define LAST_TICK_SHIFT 4u
 
 void agv_transmitter_start(agv_transmitter_t *transmitter, uint32_t now_ms) {
     transmitter->status_due_ms = now_ms;
@@ -194,8 +197,8 @@ static void note_foreign(agv_transmitter_t *transmitter, uint32_t command) {
     const uint8_t count = transmitter->alone[command];
     if (!alone) {
         transmitter->alone[command] = 0u;
-    } else if (count < (uint8_t)ALONE_MAX) {
-        transmitter->alone[command] = (uint8_t)(count + (uint8_t)ALONE_FRAME);
+    } else if (count < ALONE_MAX) {
+        transmitter->alone[command] = (uint8_t)(count + ALONE_FRAME);
     } else {
         /* enough */
     }
@@ -211,7 +214,7 @@ void agv_transmitter_answer(agv_transmitter_t *transmitter, const agv_tx_orders_
     note_foreign(transmitter, command);
     if (agv_scheduler_override(&transmitter->scheduler, orders->timers->now_us, orders->config->override_gap_ms,
                                command) &&
-        (!orders->passive || (transmitter->alone[command] >= (uint8_t)ALONE_ENOUGH))) {
+        (!orders->passive || (transmitter->alone[command] >= ALONE_ENOUGH))) {
         override(transmitter, orders, command);
     }
 }
@@ -290,7 +293,7 @@ void agv_transmitter_pass(agv_transmitter_t *transmitter, const agv_tx_orders_t 
 static bool is_quiet(const agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command) {
     const bool came = (transmitter->foreign_lately & agv_message_bit(command)) != 0u;
     const bool late = (orders->timers->now_ms - transmitter->tick_ms) > (uint32_t)TICK_USUAL_MS;
-    return late || (!came && (transmitter->alone[command] < (uint8_t)ALONE_ENOUGH));
+    return late || (!came && (transmitter->alone[command] < ALONE_ENOUGH));
 }
 
 static void forget_foreign(agv_transmitter_t *transmitter) {
