@@ -97,7 +97,7 @@ def supply_and_can():
     d.text(24, 236, "CAN: one transceiver (a gateway has two)", "title")
     transceiver(d)
     bus_end(d)
-    d.text(24, 588, "J1 open: normal. J1 closed: silent, the transceiver cannot send (until the first armed run).", "small")
+    d.text(24, 588, "J1 open: normal. J1 closed: silent, the transceiver cannot send (closed until step 4 of the checklist).", "small")
     d.text(24, 606, "J2 closed only where the supervisor is at the end of this bus.", "small")
     return d.svg()
 

@@ -42,7 +42,7 @@ export function endsOf(steps) {
 
 const CHOICES = {
   gear: ["D", "R", "N", "P"], side: ["vehicle", "ai"], cause: ["power-on", "watchdog", "brown-out", "lock-up", "software", "unknown"], button: ["1", "2"],
-  part: ["flash", "ram", "processor", "watchdog", "devices"],
+  part: ["flash", "ram", "processor", "watchdog", "devices", "supply"],
 };
 const KINDS = { garbage: ["random", "wrong_length", "extended", "remote"], deliver: ["data", "extended", "remote", "fd", "error"], send: ["data", "extended", "remote", "fd"] };
 const DEFAULTS = {

@@ -6,7 +6,7 @@ import { NONE } from "../simulation/module.js";
 const GEARS = { P: 8, R: 2, N: 4, D: 1 };
 const EPS_MODES = { 0: "assist", 1: "angle control", 2: "speed", 3: "torque", 255: "off" };
 const ALARMS = [[0x01, "remote signal lost"], [0x02, "remote power lost"], [0x08, "AI computer lost"], [0x10, "EPS hardware"],
-  [0x20, "EPS not heard"], [0x80, "driver stage"]];
+  [0x20, "EPS CAN bus fault"], [0x80, "S-driver"]];
 const STRIPE = 24; // px of a metre of the road
 
 /** A scale with a bar, and marks for what was commanded. */
