@@ -12,6 +12,15 @@
 
 enum { TIME_SIZE = 32, LIMIT_SIZE = 64, STOOD_US = 20000, US_PER_TENTH = 100, EXACT_TENTHS = 100 };
 
+/* Every fault has its phrase: a fault that is added to fault_table.def needs one here. */
+enum {
+#define FAULT_PHRASE(fault_, phrase) PHRASE_OF_##fault_,
+#include "report/fault_phrases.def"
+#undef FAULT_PHRASE
+    PHRASES
+};
+_Static_assert((int)PHRASES == (int)AGV_FAULT_COUNT, "a fault has no phrase in fault_phrases.def");
+
 const char *sentence_phrase(agv_fault_t fault) {
     static const char *const phrases[AGV_FAULT_COUNT] = {
 #define FAULT_PHRASE(fault_, phrase) [AGV_FAULT_##fault_] = (phrase),

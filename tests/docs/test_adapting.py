@@ -1,7 +1,8 @@
 #!/usr/bin/python3 -B
 """docs/adapting.md, word for word: its settings, and whether its changes of the sources still apply.
 
-With AGV_DOCS_BUILD=1 (tests/proofs/adapting/run) the changed sources are built and run, too. AGV_ADAPTING_PAGE is another page.
+Of the changed sources the core, and the tables that explain a fault, are compiled. With AGV_DOCS_BUILD=1 (tests/proofs/adapting/run)
+all of them are built and run. AGV_ADAPTING_PAGE is another page.
 """
 import os
 import pathlib
@@ -28,6 +29,16 @@ def without_builds(steps):
             yield step
 
 
+def compile_tables(case):
+    """Static assertions say when the core no longer fits its memory, or a fault has no row."""
+    sources = [*sorted(WORK.glob("firmware/src/*/*.c")), *(WORK / name for name in ("host_sim/why/why_table.c", "host_sim/report/sentence.c"))]
+    case.assertGreater(len(sources), 20)
+    folders = ("firmware/include", "firmware/src", "hal/include", "host_sim")
+    done = subprocess.run([os.environ.get("CC", "cc"), "-std=c11", "-fsyntax-only", *(f"-I{WORK / folder}" for folder in folders), *sources],
+                          stderr=subprocess.PIPE, check=False, text=True)
+    case.assertEqual(0, done.returncode, done.stderr)
+
+
 class Adapting(unittest.TestCase):
     def test_what_the_page_says(self):
         typed.copy_tree(ROOT, WORK)
@@ -45,6 +56,8 @@ class Adapting(unittest.TestCase):
             steps = without_builds(steps)
         count = typed.follow(self, steps, WORK, environment, LEFT_OUT)
         self.assertGreater(count, 10)
+        if not BUILDS:
+            compile_tables(self)
         print(f"{count} commands of the page typed")
 
 
