@@ -26,6 +26,17 @@ setup_file() {
     [[ $output == *"host_sim replay $PREFIX/share/agv-supervisor/examples/ai-stops.log"* ]]
 }
 
+@test "the links between the installed pages hold" {
+    cd "$PREFIX/share/doc/agv-supervisor"
+    [ -f CHANGELOG.md ]
+    local links
+    mapfile -t links < <(grep -oE '\(docs/[^)#]+' README.md | cut -c2-)
+    [ "${#links[@]}" -gt 20 ]
+    for link in "${links[@]}"; do
+        [ -f "$link" ] || { echo "$link" && return 1; }
+    done
+}
+
 @test "the JSON Schemas are installed as the program prints them" {
     for file in scenario config; do
         diff <("$PREFIX/bin/host_sim" "$file" --schema) "$PREFIX/share/agv-supervisor/schemas/$file.schema.json"
