@@ -40,20 +40,20 @@ static bool may_be_chosen(agv_fault_t fault) {
 }
 
 /** Which values weaken the supervision. */
-static const char *weakens_text(const agv_setting_info_t *info) {
+static void print_weakens(const agv_setting_info_t *info) {
     static const struct {
         const char *weakens;
         const char *text;
-    } texts[] = {{"ABOVE", "; a higher value weakens the supervision"},
-                 {"BELOW", "; a lower value weakens the supervision"},
-                 {"ZERO", "; 0 weakens the supervision"},
-                 {"CHOSEN", "; the second word weakens the supervision"}};
-    for (size_t i = 0u; i < sizeof texts / sizeof texts[0]; i++) {
-        if (strcmp(info->weakens, texts[i].weakens) == 0) {
-            return texts[i].text;
+    } values[] = {{"ABOVE", "a higher value"}, {"BELOW", "a lower value"}, {"ZERO", "0"}};
+    const char *text = (strcmp(info->weakens, "CHOSEN") == 0) ? strchr(info->words, '|') + 1 : NULL;
+    for (size_t i = 0u; i < sizeof values / sizeof values[0]; i++) {
+        if (strcmp(info->weakens, values[i].weakens) == 0) {
+            text = values[i].text;
         }
     }
-    return "";
+    if (text != NULL) {
+        (void)printf("; %.*s weakens the supervision", (int)strcspn(text, "|"), text);
+    }
 }
 
 void config_print_yaml(const agv_config_t *config) {
@@ -73,7 +73,8 @@ void config_print_yaml(const agv_config_t *config) {
         } else {
             (void)printf("# %s, default %s", info->words, preset);
         }
-        (void)printf("%s%s\n", weakens_text(info), info->gateway_only ? "; gateway only" : "");
+        print_weakens(info);
+        (void)printf("%s\n", info->gateway_only ? "; gateway only" : "");
         (void)printf("%s: %s\n", info->name, value);
     }
     (void)printf("\n# Class of each fault: trip|warn. A warning may be made a trip; a mandatory trip stays one.\n");

@@ -12,10 +12,9 @@
 #include "text/text.h"
 
 #ifdef CANDUMP_NO_OPTIONS
-#define CUT_OFF "; the log ends in this line"
+#define CUT_OFF "; the log is cut off in this line"
 #else
-#define CUT_OFF                                                                                                        \
-    "; the log ends in this line, which --skip-bad-lines leaves out" /* as all commands with a log have it */
+#define CUT_OFF "; the log is cut off in this line; --skip-bad-lines skips it" /* as all commands with a log have it */
 #endif
 
 bool candump_open(candump_log_t *log, const char *path, bool skip_bad) {
@@ -139,7 +138,7 @@ static bool check_beginning(candump_log_t *log) {
         return report_foreign(log, format);
     }
     if (!log->skip_bad && looks_binary(log)) {
-        return report_at(log->name, 1u, "binary data: not a log that can be read (candump -l, Vector ASC)");
+        return report_at(log->name, 1u, "binary data: unknown log format; readable are candump -l and Vector ASC");
     }
     static const char utf8_mark[] = "\xEF\xBB\xBF";
     const bool is_marked =
@@ -224,7 +223,7 @@ static const char *parse_line(candump_log_t *log, const char *line, size_t lengt
         return "the line is longer than 16383 characters";
     }
     if ((log->format == CANDUMP_FORMAT_UNKNOWN) && (line[0] != '(')) {
-        return "not a log that can be read: candump -l, candump -t a or Vector ASC, each perhaps gzip'd";
+        return "unknown log format; readable are candump -l, candump -t a and Vector ASC, each also gzip'd";
     }
     switch (log->format) {
     case CANDUMP_FORMAT_SCREEN:

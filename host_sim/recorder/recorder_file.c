@@ -230,7 +230,8 @@ bool recorder_file_read(const char *path, recorder_events_t *events) {
     bool good = (size >= 0) && take_file(events, text, (size_t)size);
     free(text);
     if (good && (events->count == 0u)) {
-        good = report("%s: contains no event of a flight recorder (of the shell's 'agv dump', or bytes)", name);
+        good = report(
+            "%s: contains no flight recorder event: neither 'agv-event' lines of 'agv dump' nor a memory dump", name);
     }
     if (good) {
         sort(events);

@@ -206,12 +206,6 @@ void replay_text_remarks(const replay_text_t *replay, analysis_t *analysis) {
     }
 }
 
-static void add_count(text_t *text, const char *what, uint64_t count) {
-    if (count > 0u) {
-        text_add(text, "%s%s: %" PRIu64, (text->used > 0u) ? ", " : "", what, count);
-    }
-}
-
 /** What was odd about the log. */
 static void print_lines(const events_summary_t *summary) {
     static const char *const kinds[AGV_REJECTED_KINDS] = {
@@ -222,10 +216,10 @@ static void print_lines(const events_summary_t *summary) {
         [AGV_REJECTED_ERROR] = "error frames",
     };
     text_t text = {.used = 0u};
-    add_count(&text, "lines skipped", summary->skipped_lines);
-    add_count(&text, "time stamps that went backwards", summary->backward_stamps);
+    text_add_count(&text, "lines skipped", summary->skipped_lines);
+    text_add_count(&text, "time stamps that went backwards", summary->backward_stamps);
     for (size_t i = 0u; i < (size_t)AGV_REJECTED_KINDS; i++) {
-        add_count(&text, kinds[i], summary->counters.rejected[i]);
+        text_add_count(&text, kinds[i], summary->counters.rejected[i]);
     }
     if (text.used > 0u) {
         why_text_line("log", WHY_TEXT_LABEL, text.bytes);

@@ -137,7 +137,7 @@ static void say_phrase(char text[SENTENCE_SIZE], const why_trip_t *trip) {
         const char *const verb = strstr(phrase, "no longer ");
         const char *const rest = (verb != NULL) ? verb + strlen("no longer ") : "";
         const char *const end = (verb != NULL) ? verb : strstr(phrase, "fell silent");
-        say(text, "%.*s%s%s", (int)(end - phrase), phrase, (verb != NULL) ? "never " : "was never heard", rest);
+        say(text, "%.*s%s%s", (int)(end - phrase), phrase, (verb != NULL) ? "never " : "was never received", rest);
     } else {
         say(text, "%s", phrase);
     }
@@ -327,7 +327,7 @@ void sentence_no_trip(sentence_t *sentence, const why_t *why, uint64_t end_us) {
         say(sentence->headline, "Nothing was supervised: the supervisor never left INIT.");
         say(sentence->cause, "The run took %s.", at(end_us, whole));
         say_missing(sentence->cause, why);
-        say(sentence->outcome, "This says nothing about the vehicle: it is no pass.");
+        say(sentence->outcome, "This says nothing about the vehicle, and does not count as passed.");
         return;
     }
     say(sentence->headline, "No trip: the supervisor found no reason to stop the vehicle.");

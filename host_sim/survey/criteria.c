@@ -313,8 +313,9 @@ static verdict_t judge_counterpart(const suspect_t *suspect, criterion_t *criter
     if ((verdict == VERDICT_DECIDES) && may_be_swapped(suspect, pair)) {
         verdict = VERDICT_FOR;
     }
-    return say(criterion, verdict, (verdict == VERDICT_REFUSES) ? "has not the %s of %03Xh" : "has the %s of %03Xh",
-               pair->what, partner->id);
+    return say(criterion, verdict,
+               (verdict == VERDICT_REFUSES) ? "does not have the %s of %03Xh" : "has the %s of %03Xh", pair->what,
+               partner->id);
 }
 
 /** Turn signals are commanded and then on. */

@@ -7,7 +7,7 @@
 
 _Static_assert(OBSERVATION_NAMES_SIZE >=
                    (OBSERVATION_INTERFACES_MAX * (CANDUMP_INTERFACE_MAX + sizeof ",")) + sizeof " and others",
-               "the names of the interfaces have no room");
+               "too many interfaces, or their names are too long");
 
 bool observation_begin(observation_t *observation, const agv_config_t *config) {
     (void)memset(observation, 0, sizeof *observation);

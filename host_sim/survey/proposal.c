@@ -139,7 +139,7 @@ static void note_values(proposal_t *proposal, const traffic_id_t *entry) {
         }
     }
     if (entry->malformed > 0u) {
-        note(proposal, "%03Xh %s: %" PRIu64 " frame%s of another length or kind, which is as silence", entry->id,
+        note(proposal, "%03Xh %s: %" PRIu64 " frame%s of another length or kind; they count as missing", entry->id,
              signals_message_name(entry->message), entry->malformed, words_plural(entry->malformed));
     }
 }

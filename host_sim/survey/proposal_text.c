@@ -53,21 +53,22 @@ static void print_all(FILE *file, const proposal_t *proposal, const char *source
     if (print_settings(file, proposal) == 0u) {
         (void)fputc('\n', file);
         print_comment(file, "",
-                      (proposal->judged > 0u) ? "The defaults fit."
-                                              : "No message of the protocol came often enough to judge the defaults.");
+                      (proposal->judged == 0u) ? "No message of the protocol came often enough to judge the defaults."
+                      : (proposal->note_count > 0u) ? "No setting needs another value so far. The notes below are open."
+                                                    : "The defaults fit.");
     }
     if (proposal->note_count > 0u) {
         (void)fputc('\n', file);
-        print_comment(file, "", "Not to be relaxed, or for a person to decide:");
+        print_comment(file, "", "Findings for which no setting is relaxed; find the cause of each:");
     }
     for (size_t i = 0u; i < proposal->note_count; i++) {
         print_comment(file, " -", proposal->notes[i]);
     }
     (void)fputc('\n', file);
-    print_comment(
-        file, "",
-        "Whatever this vehicle does: the heartbeats of VCU and EPS, the AI computer while engaged, and the faults "
-        "of the EPS stay trips (INT-2).");
+    print_comment(file, "",
+                  "These faults must stay trips (INT-2): the heartbeats of VCU and EPS, of the AI computer while "
+                  "engaged, and the "
+                  "EPS faults marked \"-\" in docs/faults.md.");
 }
 
 char *proposal_yaml(const proposal_t *proposal, const char *source) {

@@ -13,9 +13,9 @@ static void print_head(const survey_result_t *result) {
     const observation_t *observation = &result->observation;
     const double seconds = s_of_us(observation_us(observation));
     char interfaces[OBSERVATION_NAMES_SIZE];
-    text_t name;
+    text_t text;
     observation_interfaces(observation, interfaces);
-    (void)printf("%s: %.3f s on %s, %" PRIu64 " frames", text_one_line(&name, result->source.name), seconds, interfaces,
+    (void)printf("%s: %.3f s on %s, %" PRIu64 " frames", text_one_line(&text, result->source.name), seconds, interfaces,
                  observation->frames);
     if (seconds > 0.0) {
         (void)printf(" (%.0f/s)", (double)observation->frames / seconds);
@@ -26,10 +26,13 @@ static void print_head(const survey_result_t *result) {
             "         all interfaces count as one bus; --ai-if NAME makes one of them the AI side of a gateway\n");
     }
     const traffic_totals_t totals = traffic_totals(result->traffic);
-    if (observation->backward_stamps + observation->lost + result->source.skipped_lines + totals.error > 0u) {
-        (void)printf("of them  error frames %" PRIu64 ", time stamps that went backwards %" PRIu64
-                     "; not in them: lost %" PRIu64 ", lines skipped %" PRIu64 "\n",
-                     totals.error, observation->backward_stamps, observation->lost, result->source.skipped_lines);
+    text_clear(&text);
+    text_add_count(&text, "lines skipped", result->source.skipped_lines);
+    text_add_count(&text, "frames lost", observation->lost);
+    text_add_count(&text, "time stamps that went backwards", observation->backward_stamps);
+    text_add_count(&text, "error frames", totals.error);
+    if (text.used > 0u) {
+        (void)printf("%s      %s\n", (result->source.format[0] != '\0') ? "log" : "bus", text.bytes);
     }
     (void)printf("engaged  %.3f s in %" PRIu64 " engagement%s\n", s_of_us(totals.engaged_us), totals.engagements,
                  (totals.engagements == 1u) ? "" : "s");
@@ -52,14 +55,15 @@ static void print_load(const survey_result_t *result) {
 }
 
 static void print_id_sets(const survey_result_t *result) {
-    uint64_t heading[2];
-    uint64_t table[2];
-    observation_set_counts(&result->observation, AGV_ID_SET_HEADING, heading);
-    observation_set_counts(&result->observation, AGV_ID_SET_TABLE, table);
-    (void)printf("ID set   %s; heading: 43Fh %" PRIu64 ", 363h %" PRIu64 "; table: 201h %" PRIu64 ", 203h %" PRIu64
-                 "\n",
-                 (result->config.id_set == (uint16_t)AGV_ID_SET_TABLE) ? "table" : "heading", heading[0], heading[1],
-                 table[0], table[1]);
+    static const char *const names[2][3] = {{"heading", "43Fh", "363h"}, {"table", "201h", "203h"}};
+    const size_t own = (result->config.id_set == (uint16_t)AGV_ID_SET_TABLE) ? 1u : 0u;
+    const size_t other = 1u - own;
+    uint64_t counts[2][2];
+    observation_set_counts(&result->observation, AGV_ID_SET_HEADING, counts[0]);
+    observation_set_counts(&result->observation, AGV_ID_SET_TABLE, counts[1]);
+    (void)printf("ID set   %s (frames: %s %" PRIu64 ", %s %" PRIu64 "; of %s: %s %" PRIu64 ", %s %" PRIu64 ")\n",
+                 names[own][0], names[own][1], counts[own][0], names[own][2], counts[own][1], names[other][0],
+                 names[other][1], counts[other][0], names[other][2], counts[other][1]);
 }
 
 /** Deadline and margin of a message; nothing of one without. */

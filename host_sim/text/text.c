@@ -1,5 +1,6 @@
 #include "text/text.h"
 
+#include <inttypes.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -21,6 +22,12 @@ void text_add(text_t *text, const char *format, ...) {
         return;
     }
     text->used += (size_t)length;
+}
+
+void text_add_count(text_t *text, const char *what, uint64_t count) {
+    if (count > 0u) {
+        text_add(text, "%s%s: %" PRIu64, (text->used > 0u) ? ", " : "", what, count);
+    }
 }
 
 /** Read a character in UTF-8. @return its length; 0: there is none */

@@ -7,6 +7,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #define TEXT_MAX 8192u
 
@@ -19,6 +20,9 @@ typedef struct {
 
 /** Add a piece. */
 void text_add(text_t *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/** Add "what: count", behind a comma where it is not the first; nothing for 0. */
+void text_add_count(text_t *text, const char *what, uint64_t count);
 
 /** Make it empty. */
 void text_clear(text_t *text);

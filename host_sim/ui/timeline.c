@@ -213,12 +213,14 @@ void timeline_event(void *ctx, const session_event_t *event) {
 }
 
 static void show_reaction(timeline_t *timeline, uint64_t t_us) {
-    const uint64_t after_us = t_us - timeline->trip_us;
+    const uint64_t decided_us = t_us - timeline->trip_us;
+    const uint64_t caused_us = t_us - timeline->step_us;
 
     timeline->wants_reaction = false;
     line(timeline, t_us, "",
-         "first safe frame is out %" PRIu64 " us after the decision, %" PRIu64 ".%03" PRIu64 " ms after %s %s",
-         after_us, (t_us - timeline->step_us) / US_PER_MS, (t_us - timeline->step_us) % US_PER_MS,
+         "first safe frame is out %" PRIu64 ".%03" PRIu64 " ms after the decision, %" PRIu64 ".%03" PRIu64
+         " ms after %s %s",
+         decided_us / US_PER_MS, decided_us % US_PER_MS, caused_us / US_PER_MS, caused_us % US_PER_MS,
          (timeline->step_actor != NULL) ? timeline->step_actor : "the",
          (timeline->step_word != NULL) ? timeline->step_word : "start");
 }

@@ -96,7 +96,7 @@ static void print_then(const why_text_t *shown, const why_trip_t *trip) {
     if (shown->is_recorder) {
         /* it has no wheel speeds */
     } else if (trip->stopped_us == WHY_NEVER) {
-        text_add(&text, "; does not stand%s", mark);
+        text_add(&text, "; wheels never at standstill%s", mark);
     } else {
         add_time(&text, "; stands ", trip->stopped_us);
     }

@@ -318,6 +318,6 @@ class Page(unittest.TestCase):
 
 if __name__ == "__main__":
     if browser.find() is None:
-        print("SKIPPED: there is no Chromium: nobody looked at the page. scripts/install-deps test installs it.")
+        print("SKIPPED: there is no Chromium: the page was not tested. scripts/install-deps test installs it.")
         sys.exit(77)
     unittest.main(verbosity=2)

@@ -67,7 +67,7 @@ void test_a_line_that_was_cut_off_is_a_bad_one(void) {
     open_text(LINE LINE, sizeof LINE LINE - 3u, false);
     TEST_ASSERT_EQUAL_UINT(1, read_all(CANDUMP_FAILED));
     (void)scratch_said_line(
-        "log:2: the data has an odd number of digits; the log ends in this line, which --skip-bad-lines leaves out\n");
+        "log:2: the data has an odd number of digits; the log is cut off in this line; --skip-bad-lines skips it\n");
 }
 
 /* Else a log whose writer was stopped would show a frame of another length, which trips. */

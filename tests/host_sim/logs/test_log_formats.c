@@ -342,8 +342,8 @@ void test_other_formats_are_named_with_what_converts_them(void) {
 void test_what_is_no_log(void) {
     open_bytes("\0\0\0\0", 4);
     expect_failure("log:1: binary data");
-    refuse("nonsense\n", "log:1: not a log that can be read");
-    refuse("a line without an end", "log:1: not a log that can be read");
+    refuse("nonsense\n", "log:1: unknown log format");
+    refuse("a line without an end", "log:1: unknown log format");
     open_text("");
     expect_end();
 }

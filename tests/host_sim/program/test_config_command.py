@@ -44,7 +44,7 @@ class Listing(hostsim.Case):
         self.assertIn("# 1 to 2047, default 0x168\nid_gear_command: 0x168\n", text)
         self.assertIn("default 0x7F0; 0 weakens the supervision\nstatus_frame_id: 0x7F0\n", text)
         self.assertIn("# shared|gateway, default shared\n", text)
-        self.assertIn("# at_once|at_standstill, default at_once; the second word weakens the supervision\n", text)
+        self.assertIn("# at_once|at_standstill, default at_once; at_standstill weakens the supervision\n", text)
         self.assertIn("default 100; gateway only\nthrottle_ceiling_pct: 100\n", text)
 
     def test_no_line_is_wider_than_a_terminal(self):

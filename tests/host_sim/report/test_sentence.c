@@ -61,7 +61,8 @@ void test_a_message_that_never_came(void) {
                              sentence.headline);
     trip.reason = AGV_FAULT_EPS_HEARTBEAT_LOST;
     say();
-    TEST_ASSERT_EQUAL_STRING("The vehicle stands because the EPS (power steering) was never heard.", sentence.headline);
+    TEST_ASSERT_EQUAL_STRING("The vehicle stands because the EPS (power steering) was never received.",
+                             sentence.headline);
 }
 
 void test_every_silence_of_a_message_that_never_came_has_words(void) {
@@ -301,7 +302,7 @@ void test_what_was_not_supervised_is_no_pass(void) {
         "never "
         "received); a status message is missing or late (0A3h, 050h, 167h, 267h, 101h never received).",
         sentence.cause); /* nothing was heard */
-    TEST_ASSERT_EQUAL_STRING("This says nothing about the vehicle: it is no pass.", sentence.outcome);
+    TEST_ASSERT_EQUAL_STRING("This says nothing about the vehicle, and does not count as passed.", sentence.outcome);
 }
 
 void test_no_trip_and_never_engaged(void) {

@@ -176,7 +176,7 @@ class Recorder(hostsim.Case):
     def test_what_is_no_flight_recorder_is_refused(self):
         for content in (b"", b"hello\n", os.urandom(5000), bytes(200000), trip_log().encode("ascii")):
             self.write("dump", content)
-            self.assert_refused(self.run_program("recorder", "--why", "w", "dump"), "dump: contains no event")
+            self.assert_refused(self.run_program("recorder", "--why", "w", "dump"), "dump: contains no flight recorder event")
         self.assertNotIn("w", self.files())
         self.assert_refused(self.run_program("recorder", "missing"), "missing: No such file")
         self.assert_refused(self.run_program("recorder", "."), "Is a directory")

@@ -213,7 +213,7 @@ class Report(hostsim.Case):
         self.show("none")
         self.assertIn("0.511 s it was in INIT", self.text("cause"))
         self.show("unsupervised")
-        self.assertIn("it is no pass", self.text("outcome"))
+        self.assertIn("does not count as passed", self.text("outcome"))
         self.assertIn("Not supervised: 1.9", self.text("report"))
         self.assertNotIn("The autopilot was never engaged", self.text("report"))
         self.assertIn("the VCU does not report manual (363h reports autopilot from its first frame)", self.text("cause"))

@@ -205,8 +205,8 @@ class Text(Case):
             "supervised  11.48 s   INIT 0.51  STANDBY 0.49  ACTIVE 2.11  TRIPPED 8.89  SAFE 0.00",
             "tripped     at 3.107 s (22:13:23.107): STEERING_COMMAND_TIMEOUT",
             "  why       065h steering_command was silent: last at 2.981 s, deadline 125 ms, next at 4.006 s",
-            "  then      first safe frame 3.107 s; P and autopilot off not confirmed; does not stand (a recording",
-            "            cannot obey)",
+            "  then      first safe frame 3.107 s; P and autopilot off not confirmed; wheels never at standstill",
+            "            (a recording cannot obey)",
             "faults      STEERING_COMMAND_TIMEOUT  trip  3.107 s   1 time   0.900 s",
             "            SAFE_STATE_UNCONFIRMED    trip  3.607 s   1 time   8.387 s  (a recording cannot obey)",
             "            VEHICLE_NOT_STOPPING      trip  8.107 s   1 time   3.887 s  (a recording cannot obey)"])
