@@ -160,7 +160,8 @@ static status_t run_shard(atlas_t *atlas) {
         return STATUS_UNUSABLE;
     }
     (void)fprintf(output_is_stdout(results) ? stderr : stdout,
-                  "%" PRIu32 " pairs, %" PRIu32 " weaker than their worse half, %" PRIu32 " more for a known reason\n",
+                  "%" PRIu32 " pairs, %" PRIu32 " weaker than their worse baseline, %" PRIu32
+                  " more for a known reason\n",
                   atlas->cases, atlas->weak, atlas->known);
     return (atlas->weak == 0u) ? STATUS_OK : STATUS_UNMET;
 }

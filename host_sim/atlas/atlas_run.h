@@ -22,7 +22,7 @@ typedef struct {
     uint32_t one;
 } atlas_request_t;
 
-/** Run. @return STATUS_UNMET: a pair is weaker than its worse half */
+/** Run. @return STATUS_UNMET: a pair is weaker than its worse baseline */
 status_t atlas_run(const atlas_request_t *request);
 
 #endif

@@ -1,4 +1,4 @@
-/* Pairs that are as strong as their worse half, and one for each way to be weaker. */
+/* Pairs that are as strong as their worse baseline, and one for each way to be weaker. */
 #include "agv/state.h"
 #include "atlas/atlas_judge.h"
 #include "unity.h"

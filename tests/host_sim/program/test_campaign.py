@@ -319,7 +319,7 @@ class AtlasPage(hostsim.Case):
         self.write("a", self.results())
         done = self.make("a", "-o", "a.html")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertIn("1 pair of 2 faults, weaker than their worse half: none", done.stdout)
+        self.assertIn("1 pair of 2 faults, weaker than their worse baseline: none", done.stdout)
 
     def test_what_is_refused_in_one_line_with_the_file(self):
         self.write("bytes", b"\x7fELF\xff\xfe")

@@ -95,8 +95,8 @@ class Atlas:
     def figures(self):
         weak = ", ".join(f"{count} {name}" for name, count in sorted(self.weaker.items())) or "none"
         faults = {fault for row in self.rows for fault in row.split(";")[2:4]}
-        return (f"{counted(len(self.rows), 'pair')} of {counted(len(faults), 'fault')}, weaker than their worse half: {weak}; "
-                f"first safe frame later than in the quicker half: {self.slower}")
+        return (f"{counted(len(self.rows), 'pair')} of {counted(len(faults), 'fault')}, weaker than their worse baseline: {weak}; "
+                f"first safe frame later than in the quicker baseline: {self.slower}")
 
 
 def main():
