@@ -176,9 +176,10 @@ static void check_freeze(const cause_t *cause) {
     check_engaged(cause);
 }
 
-/* Shows: SUP-1, SUP-2, P13, VCU_HEARTBEAT_STUCK, EPS_HEARTBEAT_STUCK */
+/* Shows: SUP-1, SUP-2, SUP-8, FSM-2, P13, VCU_HEARTBEAT_STUCK, EPS_HEARTBEAT_STUCK, AI_HEARTBEAT_STUCK */
 void test_each_frozen_counter(void) {
     check_all(BY_FREEZE, check_freeze);
+    check_all(BY_FREEZE_ENGAGED, check_engaged);
 }
 
 /* ---- Commands: while engaged; the deadlines start with the engagement ---- */
@@ -218,7 +219,7 @@ static void check_command(const cause_t *cause) {
     }
 }
 
-/* Shows: SUP-2, SUP-3, FSM-2, AI_HEARTBEAT_LOST, GEAR_COMMAND_TIMEOUT, THROTTLE_COMMAND_TIMEOUT,
+/* Shows: SUP-2, SUP-3, SUP-8, FSM-2, AI_HEARTBEAT_LOST, GEAR_COMMAND_TIMEOUT, THROTTLE_COMMAND_TIMEOUT,
    STEERING_COMMAND_TIMEOUT */
 void test_each_silent_command(void) {
     check_all(BY_SILENCE_ENGAGED, check_command);

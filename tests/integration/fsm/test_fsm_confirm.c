@@ -2,11 +2,6 @@
 #include "one_fixture.h"
 #include "walk.h"
 
-static uint32_t send_now(agv_message_t message) {
-    fixture_send_now(&f, message);
-    return f.now_ms;
-}
-
 static void trip_and_confirm_all_but(void (*spoil)(void), const char *what) {
     fixture_init(&f);
     f.what = what;
@@ -113,18 +108,18 @@ void test_the_confirmation_counts_with_its_last_frame(void) {
     walk_to_tripped(&f);
     fixture_vehicle_confirms(&f);
     for (unsigned i = 0; i < 3; i++) {
-        (void)send_now(AGV_MSG_VEHICLE_STATUS);
+        fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
         expect_state(&f, AGV_STATE_TRIPPED);
     }
-    (void)send_now(AGV_MSG_GEAR_STATUS);
+    fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
     expect_state(&f, AGV_STATE_SAFE);
     fixture_init(&f);
     walk_to_tripped(&f);
     fixture_vehicle_confirms(&f);
-    (void)send_now(AGV_MSG_GEAR_STATUS);
+    fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
     for (unsigned i = 0; i < 3; i++) { /* not engaged: with the third one */
         expect_state(&f, AGV_STATE_TRIPPED);
-        (void)send_now(AGV_MSG_VEHICLE_STATUS);
+        fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
     }
     expect_state(&f, AGV_STATE_SAFE);
 }
@@ -155,19 +150,19 @@ void test_leaving_p_or_engaging_withdraws_the_confirmation_in_that_frame(void) {
     walk_to_safe(&f);
     for (unsigned i = 0; i < sizeof GEARS; i++) {
         fixture_gear(&f, GEARS[i]);
-        (void)send_now(AGV_MSG_GEAR_STATUS);
+        fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
         expect_state(&f, AGV_STATE_TRIPPED);
         fixture_gear(&f, GEAR_P);
-        (void)send_now(AGV_MSG_GEAR_STATUS);
+        fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
         expect_state(&f, AGV_STATE_SAFE);
     }
     fixture_mode(&f, MODE_ENGAGED);
-    (void)send_now(AGV_MSG_VEHICLE_STATUS);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
     expect_state(&f, AGV_STATE_TRIPPED);
     fixture_mode(&f, MODE_MANUAL);
     for (unsigned i = 0; i < 3; i++) {
         expect_state(&f, AGV_STATE_TRIPPED);
-        (void)send_now(AGV_MSG_VEHICLE_STATUS);
+        fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
     }
     expect_state(&f, AGV_STATE_SAFE);
     expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
@@ -196,10 +191,10 @@ void test_a_vcu_that_is_not_alive_confirms_nothing(void) {
     expect_state_after(&f, 50, AGV_STATE_SAFE);
     expect_state_after(&f, 1, AGV_STATE_TRIPPED);
     f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = true;
-    (void)send_now(AGV_MSG_VEHICLE_STATUS);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
     expect_state(&f, AGV_STATE_TRIPPED);
     f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = false;
-    (void)send_now(AGV_MSG_VEHICLE_STATUS);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
     expect_state(&f, AGV_STATE_SAFE);
 }
 

@@ -2,10 +2,6 @@
 #include "one_fixture.h"
 #include "walk.h"
 
-static void start_moving(int32_t left_mm_s, int32_t right_mm_s) {
-    fixture_wheels(&f, left_mm_s, right_mm_s);
-}
-
 /* A vehicle at 1 m/s trips; the AI computer is silent from then on. @return time of the trip */
 static uint32_t trip_while_driving(void) {
     f.config.park = AGV_PARK_AT_STANDSTILL;
@@ -88,7 +84,7 @@ static void expect_p_only_after_3_s(uint32_t trip_ms) {
 /* Shows: FSM-1 */
 void test_at_standstill_p_is_sent_after_3_s_at_the_latest(void) {
     const uint32_t trip_ms = trip_while_driving();
-    start_moving(0, -50);
+    fixture_wheels(&f, 0, -50);
     expect_p_only_after_3_s(trip_ms);
 }
 
@@ -116,18 +112,6 @@ void test_at_standstill_a_gear_command_of_another_sender_is_not_overridden_befor
 }
 
 /* Shows: FSM-1, FSM-7 */
-void test_at_standstill_in_init_the_3_s_run_from_the_start(void) {
-    f.config.park = AGV_PARK_AT_STANDSTILL;
-    fixture_mute_ai(&f, true);
-    fixture_mode(&f, MODE_ENGAGED);
-    start_moving(1000, 1000);
-    fixture_start(&f);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
-    expect_p_only_after_3_s(f.now_ms);
-    expect_state(&f, AGV_STATE_INIT);
-}
-
-/* Shows: FSM-1, FSM-7 */
 void test_at_standstill_in_init_p_is_sent_when_the_vehicle_stands(void) {
     const uint32_t start_ms = f.now_ms;
     f.config.park = AGV_PARK_AT_STANDSTILL;
@@ -136,18 +120,6 @@ void test_at_standstill_in_init_p_is_sent_when_the_vehicle_stands(void) {
     fixture_run(&f, 400); /* the first 101h comes at 3 ms */
     TEST_ASSERT_EQUAL_UINT32(103, fixture_nth_sent(&f, 0x168, 0)->time_ms - start_ms);
     TEST_ASSERT_EQUAL_UINT32(203, fixture_nth_sent(&f, 0x168, 1)->time_ms - start_ms);
-}
-
-/* Shows: FSM-1, FSM-7, SUPERVISOR_RESET */
-void test_at_standstill_after_a_restart_the_3_s_run_from_the_start(void) {
-    f.config.park = AGV_PARK_AT_STANDSTILL;
-    walk_driving(&f, 1000);
-    fixture_mute_ai(&f, true);
-    fixture_restart(&f, HAL_RESET_WATCHDOG);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F));
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
-    expect_p_only_after_3_s(f.now_ms);
 }
 
 /* Shows: FSM-1 */

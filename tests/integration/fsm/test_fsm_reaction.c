@@ -2,12 +2,6 @@
 #include "one_fixture.h"
 #include "walk.h"
 
-/* Pass one frame now, without a tick. */
-static uint32_t send_now(agv_message_t message) {
-    fixture_send_now(&f, message);
-    return f.traffic[message].call;
-}
-
 /* Shows: FSM-2, S_DRIVER_ALARM */
 void test_a_fault_in_a_frame_trips_in_the_same_call(void) {
     fixture_angle(&f, 9123);
@@ -15,8 +9,8 @@ void test_a_fault_in_a_frame_trips_in_the_same_call(void) {
     fixture_active(&f);
     expect_silence(&f);
     walk_alarm(&f, ALARM_S_DRIVER);
-    const uint32_t call = send_now(AGV_MSG_VEHICLE_STATUS);
-    expect_trip(&f, AGV_FAULT_S_DRIVER_ALARM, call, 9123);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_trip(&f, AGV_FAULT_S_DRIVER_ALARM, f.call, 9123);
     TEST_ASSERT_EQUAL_UINT32(4, f.sent_count);
 }
 
@@ -72,7 +66,7 @@ void test_a_second_trip_cause_sends_nothing_at_once(void) {
     fixture_run(&f, 10);
     fixture_forget_sent(&f);
     f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x80;
-    (void)send_now(AGV_MSG_EPS_STATUS);
+    fixture_send_now(&f, AGV_MSG_EPS_STATUS);
     expect_silence(&f);
     expect_fault(&f, AGV_FAULT_EPS_POSITION_ENCODER, true);
 }

@@ -2,25 +2,11 @@
 #include "one_fixture.h"
 #include "walk.h"
 
-/* Press (or release) the button in a 363h of its own, now. */
-static void press(bool pressed) {
-    fixture_button(&f, pressed);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-}
-
 /* Press now, release after this many milliseconds. */
 static void hold_for(uint32_t ms) {
-    press(true);
+    walk_button(&f, true);
     fixture_run(&f, ms);
-    press(false);
-}
-
-/* The reset comes with the release, not earlier. */
-static void expect_reset_by(uint32_t ms) {
-    press(true);
-    expect_state_after(&f, ms, AGV_STATE_SAFE);
-    press(false);
-    expect_state(&f, AGV_STATE_STANDBY);
+    walk_button(&f, false);
 }
 
 static void expect_refusals(uint32_t count, uint16_t expected) {
@@ -33,7 +19,7 @@ static void expect_refusals(uint32_t count, uint16_t expected) {
 void test_a_press_of_1_s_with_all_conditions_resets_at_its_release(void) {
     agv_event_t event = {0};
     walk_to_safe(&f);
-    expect_reset_by(1000);
+    walk_reset(&f, 1000);
     expect_reason(&f, AGV_FAULT_NONE);
     expect_output(&f, true);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_events(&f, AGV_EVENT_RESET, 1, ANY, &event));
@@ -131,16 +117,16 @@ void test_each_missing_condition_refuses_and_is_named_once_a_press(void) {
     for (unsigned i = 0; i < sizeof CONDITIONS / sizeof CONDITIONS[0]; i++) {
         const uint16_t missing = CONDITIONS[i].missing;
         begin(&CONDITIONS[i]);
-        press(true);
+        walk_button(&f, true);
         fixture_run(&f, 1500);
         expect_refusals(0, 0);
-        press(false);
+        walk_button(&f, false);
         expect_refusals(1, missing);
-        press(true);
+        walk_button(&f, true);
         fixture_run(&f, 5001);
         expect_refusals(2, missing | AGV_MISSING_RELEASED);
         fixture_run(&f, 1000);
-        press(false);
+        walk_button(&f, false);
         expect_refusals(2, missing | AGV_MISSING_RELEASED);
         expect_state(&f, CONDITIONS[i].state);
     }
@@ -149,25 +135,10 @@ void test_each_missing_condition_refuses_and_is_named_once_a_press(void) {
 /* Shows: FSM-3 */
 void test_the_conditions_must_hold_in_the_releasing_frame_too(void) {
     walk_to_safe(&f);
-    press(true);
-    fixture_run(&f, 1500);
-    fixture_mode(&f, MODE_NEITHER);
-    press(false);
-    expect_refusals(1, AGV_MISSING_MANUAL);
-    fixture_init(&f);
-    walk_to_safe(&f);
-    press(true);
-    fixture_run(&f, 1500);
-    alarm(true);
-    press(false);
-    expect_refusals(1, AGV_MISSING_TRIP_CAUSE);
-    expect_state(&f, AGV_STATE_SAFE);
-    fixture_init(&f);
-    walk_to_safe(&f);
-    press(true);
+    walk_button(&f, true);
     fixture_run(&f, 1500);
     fixture_mode(&f, MODE_BOTH); /* manual stays valid, but both bits confirm nothing */
-    press(false);
+    walk_button(&f, false);
     expect_refusals(1, AGV_MISSING_STATE);
     expect_state(&f, AGV_STATE_TRIPPED);
 }
@@ -179,11 +150,11 @@ static void release_with_old_067h(uint32_t last_ms) {
     walk_to_safe(&f);
     fixture_run_past(&f, AGV_MSG_STEERING_STATUS);
     fixture_run(&f, 1000 - last_ms); /* so that one comes then */
-    press(true);
+    walk_button(&f, true);
     fixture_run(&f, last_ms);
     f.traffic[AGV_MSG_STEERING_STATUS].muted = true;
     fixture_run(&f, 1000 - last_ms);
-    press(false);
+    walk_button(&f, false);
 }
 
 /* Shows: FSM-3, EPS_HEARTBEAT_LOST */
@@ -200,11 +171,11 @@ void test_a_deadline_that_expires_in_the_last_tick(void) {
 static void expect_no_reset_before_a_new_press(void) {
     uint16_t missing = 0;
     expect_state_after(&f, 3000, AGV_STATE_SAFE);
-    press(false);
+    walk_button(&f, false);
     expect_state(&f, AGV_STATE_SAFE);
     TEST_ASSERT_EQUAL_UINT32(1, walk_refusals(&f, &missing));
     TEST_ASSERT_BITS_HIGH(AGV_MISSING_BUTTON, missing);
-    expect_reset_by(1000);
+    walk_reset(&f, 1000);
 }
 
 /* Shows: FSM-3 */
@@ -222,17 +193,17 @@ void test_a_press_in_the_very_frame_of_the_trip_does_not_count(void) {
 /* Shows: FSM-3, VCU_HEARTBEAT_LOST */
 void test_the_loss_of_the_vcu_ends_a_press(void) {
     walk_to_safe(&f);
-    press(true);
+    walk_button(&f, true);
     fixture_run(&f, 1200);
     f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true;
     expect_state_after(&f, 100, AGV_STATE_TRIPPED);
     expect_refusals(1, AGV_MISSING_VCU_HEARTBEAT);
     f.traffic[AGV_MSG_VEHICLE_STATUS].muted = false;
     expect_state_after(&f, 1500, AGV_STATE_SAFE);
-    press(false);
+    walk_button(&f, false);
     expect_refusals(2, AGV_MISSING_BUTTON); /* it was pressed before the VCU came back */
     expect_state(&f, AGV_STATE_SAFE);
-    expect_reset_by(1000);
+    walk_reset(&f, 1000);
 }
 
 /* Shows: FSM-3, VCU_HEARTBEAT_STUCK */
@@ -242,11 +213,11 @@ void test_the_button_of_a_vcu_that_is_not_alive_does_not_count(void) {
     expect_state_after(&f, 100, AGV_STATE_TRIPPED);
     hold_for(1500);
     expect_refusals(0, 0);
-    press(true);
+    walk_button(&f, true);
     fixture_run(&f, 1500);
     f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = false;
     fixture_run(&f, 1500);
-    press(false);
+    walk_button(&f, false);
     expect_refusals(1, AGV_MISSING_BUTTON);
     expect_state(&f, AGV_STATE_SAFE);
 }
@@ -263,7 +234,7 @@ void test_a_throttle_status_whose_silence_only_warns_is_needed_too(void) {
     expect_refusals(1, AGV_MISSING_THROTTLE);
     f.traffic[AGV_MSG_THROTTLE_STATUS].muted = false;
     fixture_run(&f, 100);
-    expect_reset_by(1100);
+    walk_reset(&f, 1100);
 }
 
 /* ---- The remote receiver is lost ---- */
@@ -274,10 +245,10 @@ static void lose_the_receiver(uint8_t alarm_bits) {
     agv_fault_set_put(&f.config.trips, AGV_FAULT_REMOTE_SIGNAL_LOST, false); /* else it prevents the reset */
     agv_fault_set_put(&f.config.trips, AGV_FAULT_REMOTE_POWER_LOST, false);
     walk_to_safe(&f);
-    press(true);
+    walk_button(&f, true);
     fixture_run(&f, 1500);
     walk_alarm(&f, alarm_bits);
-    press(false);
+    walk_button(&f, false);
 }
 
 /* The loss does not count as a release, and a pressed button after it is no rising edge. */
@@ -293,7 +264,7 @@ void test_a_receiver_that_is_lost_and_comes_back_is_neither_release_nor_press(vo
         hold_for(1500);
         expect_state(&f, AGV_STATE_SAFE);
         expect_refusals(2, AGV_MISSING_BUTTON);
-        expect_reset_by(1000);
+        walk_reset(&f, 1000);
     }
 }
 
@@ -311,11 +282,11 @@ void test_button_2_resets_nothing(void) {
 void test_a_press_outside_the_latch_is_no_event(void) {
     fixture_standby(&f);
     hold_for(2000);
-    press(true);
+    walk_button(&f, true);
     fixture_run(&f, 3000);
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run(&f, 3000);
-    press(false);
+    walk_button(&f, false);
     expect_state_after(&f, 100, AGV_STATE_ACTIVE);
     expect_refusals(0, 0);
 }
@@ -335,17 +306,8 @@ static void trip_by_silent_ai(void) {
 void test_a_dead_ai_computer_does_not_hinder(void) {
     trip_by_silent_ai();
     expect_reason(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT);
-    expect_reset_by(1000);
+    walk_reset(&f, 1000);
     expect_state_after(&f, 3000, AGV_STATE_STANDBY);
-}
-
-/* Shows: FSM-3, SUP-8 */
-void test_a_dead_ai_computer_does_not_hinder_though_it_trips_in_manual(void) {
-    f.config.ai_lost_in_manual = AGV_AI_LOST_TRIP;
-    trip_by_silent_ai();
-    expect_fault(&f, AGV_FAULT_AI_HEARTBEAT_LOST, true);
-    expect_reset_by(1000);
-    expect_state_after(&f, 3000, AGV_STATE_STANDBY); /* the reset forgot that the AI was received */
 }
 
 /* Shows: FSM-3, SUP-8, AI_HEARTBEAT_STUCK */
@@ -356,7 +318,7 @@ void test_a_frozen_ai_computer_does_not_hinder_though_it_trips_in_manual(void) {
     expect_tripped_after(&f, 500, AGV_FAULT_AI_HEARTBEAT_STUCK);
     fixture_vehicle_confirms(&f);
     fixture_run(&f, 300);
-    expect_reset_by(1000);
+    walk_reset(&f, 1000);
 }
 
 /* Three of four frames are D, 100 % and out of range, one a millisecond. */
@@ -381,7 +343,7 @@ static void expect_babbling_ai_does_not_hinder(uint16_t topology) {
     }
     f.edit = babble;
     expect_fault_after(&f, 200, AGV_FAULT_COMMAND_TOO_FAST, true);
-    expect_reset_by(1000);
+    walk_reset(&f, 1000);
 }
 
 /* Shows: FSM-3, COMMAND_TOO_FAST */
@@ -396,7 +358,7 @@ void test_a_dead_ai_side_of_a_gateway_does_not_hinder(void) {
     walk_to_safe(&f);
     sim_hal_set_can_state(&f.hal, HAL_CAN_AI, HAL_CAN_BUS_OFF);
     expect_fault_after(&f, 200, AGV_FAULT_AI_BUS_OFF, true);
-    expect_reset_by(1000);
+    walk_reset(&f, 1000);
 }
 
 /* ---- After it ---- */
@@ -404,11 +366,11 @@ void test_a_dead_ai_side_of_a_gateway_does_not_hinder(void) {
 /* Shows: FSM-2, FSM-3 */
 void test_safe_commands_that_wait_do_not_leave_after_the_reset(void) {
     walk_to_safe(&f);
-    press(true);
+    walk_button(&f, true);
     fixture_run(&f, 950);
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
     fixture_run(&f, 50);
-    press(false);
+    walk_button(&f, false);
     expect_state(&f, AGV_STATE_STANDBY);
     fixture_forget_sent(&f);
     const uint32_t dropped = agv_supervisor_counters(&f.supervisor)->dropped;
@@ -422,8 +384,8 @@ void test_safe_commands_that_wait_do_not_leave_after_the_reset(void) {
 /* Shows: FSM-3, FSM-4 */
 void test_a_press_from_before_a_second_trip_does_not_reset_it(void) {
     walk_to_safe(&f);
-    expect_reset_by(1000);
-    press(true);
+    walk_reset(&f, 1000);
+    walk_button(&f, true);
     fixture_run(&f, 50);
     walk_trip(&f);
     expect_no_reset_before_a_new_press();
@@ -432,7 +394,7 @@ void test_a_press_from_before_a_second_trip_does_not_reset_it(void) {
 /* Shows: FSM-3, SUP-8 */
 void test_after_the_reset_the_autopilot_can_be_engaged_again(void) {
     walk_to_safe(&f);
-    expect_reset_by(1000);
+    walk_reset(&f, 1000);
     fixture_forget_sent(&f);
     fixture_mute_ai(&f, false);
     fixture_run(&f, 300);
@@ -454,14 +416,14 @@ void test_of_a_late_step_10_ms_count_for_the_conditions(void) {
         f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF;
         fixture_throttle(&f, 3);
         fixture_run(&f, 500);
-        press(true);
+        walk_button(&f, true);
         fixture_run(&f, 500);
         fixture_run_without_ticks(&f, 60);
         fixture_throttle(&f, 0);
         fixture_send_now(&f, AGV_MSG_THROTTLE_STATUS);
         fixture_run(&f, 1);
         fixture_run(&f, cases[i].more_ms);
-        press(false);
+        walk_button(&f, false);
         expect_state(&f, cases[i].state);
     }
 }

@@ -2,27 +2,14 @@
 #include "one_fixture.h"
 #include "walk.h"
 
-static void press(bool pressed) {
-    fixture_button(&f, pressed);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-}
-
-/* Press now, release after this many milliseconds: this resets. */
-static void expect_reset_by(uint32_t ms) {
-    press(true);
-    expect_state_after(&f, ms, AGV_STATE_SAFE);
-    press(false);
-    expect_state(&f, AGV_STATE_STANDBY);
-}
-
 /* The AI computer is forgotten in the frame that releases the button, not only in the next tick. */
 static void expect_reset_in_a_frame(agv_fault_t forgotten) {
     fixture_vehicle_confirms(&f);
     expect_fault_after(&f, 300, forgotten, true);
-    press(true);
+    walk_button(&f, true);
     expect_state_after(&f, 999, AGV_STATE_SAFE);
     fixture_run_without_ticks(&f, 1);
-    press(false);
+    walk_button(&f, false);
     expect_state(&f, AGV_STATE_STANDBY);
     expect_fault(&f, forgotten, false);
 }
@@ -44,15 +31,15 @@ void test_a_reset_forgets_the_ai_computer_at_once(void) {
 /* Shows: FSM-3 */
 void test_a_second_reset_needs_its_own_second(void) {
     walk_to_safe(&f);
-    expect_reset_by(1000);
+    walk_reset(&f, 1000);
     fixture_run(&f, 2000);
     walk_trip(&f);
-    press(true);
+    walk_button(&f, true);
     expect_state(&f, AGV_STATE_SAFE);
     fixture_run(&f, 999);
-    press(false);
+    walk_button(&f, false);
     expect_state(&f, AGV_STATE_SAFE);
-    expect_reset_by(1000);
+    walk_reset(&f, 1000);
 }
 
 /* The first frame after the start, before any tick, reports the button pressed: that press did not begin after the trip. */
@@ -63,16 +50,16 @@ void test_a_button_that_is_held_over_a_restart_resets_nothing(void) {
     fixture_restart(&f, HAL_RESET_WATCHDOG);
     fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
     expect_state_after(&f, 3000, AGV_STATE_SAFE);
-    press(false);
+    walk_button(&f, false);
     fixture_run(&f, 20);
-    expect_reset_by(1000);
+    walk_reset(&f, 1000);
 }
 
 /* Shows: FSM-3, INT-3 */
 void test_the_event_of_the_reset_names_no_fault(void) {
     agv_event_t event = {0};
     walk_to_safe(&f);
-    expect_reset_by(1000);
+    walk_reset(&f, 1000);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_events(&f, AGV_EVENT_STATE, AGV_STATE_SAFE, ANY, &event));
     TEST_ASSERT_EQUAL_HEX8(AGV_STATE_STANDBY, event.b);
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, event.c);
@@ -87,10 +74,10 @@ void test_an_engagement_in_the_frame_after_a_reset_finds_the_ai_computer_lost(vo
     fixture_run(&f, 500);
     fixture_vehicle_confirms(&f);
     fixture_run(&f, 300);
-    press(true);
+    walk_button(&f, true);
     fixture_run(&f, 999);
     fixture_run_without_ticks(&f, 1);
-    press(false);
+    walk_button(&f, false);
     expect_state(&f, AGV_STATE_STANDBY);
     fixture_mode(&f, MODE_ENGAGED);
     expect_fault(&f, AGV_FAULT_AI_HEARTBEAT_LOST, false);

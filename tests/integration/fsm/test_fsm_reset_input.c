@@ -10,12 +10,6 @@ static void choose(uint16_t input) {
     fixture_run(&f, 1100);
 }
 
-/* Remote button 1, in a 363h of its own. */
-static void remote(bool pressed) {
-    fixture_button(&f, pressed);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-}
-
 static void push(bool pressed) {
     f.hal.board.button_is_down = pressed;
 }
@@ -37,9 +31,9 @@ static void expect_refusals(uint32_t count, uint16_t expected) {
 /* Shows: HW-3 */
 void test_with_pin_the_push_button_resets_and_the_remote_button_does_not(void) {
     choose(AGV_RESET_INPUT_PIN);
-    remote(true);
+    walk_button(&f, true);
     fixture_run(&f, 1500);
-    remote(false);
+    walk_button(&f, false);
     expect_state(&f, AGV_STATE_SAFE);
     expect_refusals(0, 0);
     push(true);
@@ -55,9 +49,9 @@ void test_with_can_the_push_button_resets_nothing(void) {
     push_for(1500);
     expect_state(&f, AGV_STATE_SAFE);
     expect_refusals(0, 0);
-    remote(true);
+    walk_button(&f, true);
     fixture_run(&f, 1000);
-    remote(false);
+    walk_button(&f, false);
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
@@ -67,9 +61,9 @@ void test_with_both_either_button_resets(void) {
     push_for(1000);
     expect_state(&f, AGV_STATE_STANDBY);
     choose(AGV_RESET_INPUT_BOTH);
-    remote(true);
+    walk_button(&f, true);
     fixture_run(&f, 1000);
-    remote(false);
+    walk_button(&f, false);
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
@@ -88,9 +82,9 @@ void test_a_press_of_the_push_button_in_vain_is_reported(void) {
 /* Shows: HW-3, FSM-3 */
 void test_a_press_of_the_remote_button_in_vain_is_reported(void) {
     choose(AGV_RESET_INPUT_BOTH);
-    remote(true);
+    walk_button(&f, true);
     fixture_run(&f, 5100);
-    remote(false);
+    walk_button(&f, false);
     expect_state_after(&f, 100, AGV_STATE_SAFE);
     expect_refusals(1, AGV_MISSING_RELEASED);
 }
@@ -102,7 +96,7 @@ void test_a_press_in_vain_of_one_button_does_not_hinder_the_other(void) {
     for (uint32_t run = 0; run < 50; run++) {
         choose(AGV_RESET_INPUT_BOTH);
         fixture_run(&f, run % 10);
-        remote(true);
+        walk_button(&f, true);
         fixture_run(&f, 3500);
         push(true);
         fixture_run(&f, 4978 - 3500 + (run / 10));
@@ -120,7 +114,7 @@ void test_a_push_button_that_is_down_too_long_does_not_hinder_the_remote_button(
         fixture_run(&f, run);
         push(true);
         fixture_run(&f, 3500);
-        remote(true);
+        walk_button(&f, true);
         fixture_run(&f, 5015 - 3500);
         fixture_button(&f, false);
         expect_state_after(&f, 10, AGV_STATE_STANDBY);
@@ -196,8 +190,8 @@ void test_a_closed_contact_of_a_closed_output_does_not_hinder_the_reset(void) {
     walk_to_safe(&f);
     expect_output(&f, true);
     fixture_run(&f, 1100);
-    remote(true);
+    walk_button(&f, true);
     fixture_run(&f, 1000);
-    remote(false);
+    walk_button(&f, false);
     expect_state(&f, AGV_STATE_STANDBY);
 }

@@ -100,20 +100,3 @@ void test_counts_of_frames(void) {
         check_count(rows[i].message, rows[i].bad, rows[i].frames, rows[i].fault);
     }
 }
-
-/* Shows: SUP-7, TX_STALLED, BUS_OFF */
-void test_times_of_the_bus(void) {
-    f.config.tx_stalled_ms = 20;
-    f.config.bus_off_recovery_ms = 33;
-    fixture_standby(&f);
-    sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 20);
-    expect_nothing_after(&f, 1, AGV_FAULT_TX_STALLED, AGV_STATE_STANDBY);
-    sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 21);
-    expect_trip_after(&f, 1, AGV_FAULT_TX_STALLED, NO_HOLD);
-    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
-    fixture_run(&f, 1);
-    fixture_run(&f, 32);
-    TEST_ASSERT_EQUAL_UINT32(0, f.hal.can[HAL_CAN_VEHICLE].recover_requests);
-    fixture_run(&f, 1);
-    TEST_ASSERT_EQUAL_UINT32(1, f.hal.can[HAL_CAN_VEHICLE].recover_requests);
-}

@@ -15,7 +15,7 @@ static void expect_no_fault(agv_state_t state) {
 
 /* ---- Lost and stuck ---- */
 
-/* Muted: silent from now on. Frozen: sends on with an unchanged counter. */
+/* In manual; engaged: causes.c. Muted: silent from now on. Frozen: sends on with an unchanged counter. */
 static void check_manual(agv_fault_t fault, bool *how) {
     fixture_standby(&f);
     fixture_run_past(&f, AI);
@@ -38,70 +38,14 @@ static void check_manual(agv_fault_t fault, bool *how) {
     expect_led(&f, 0);
 }
 
-static void check_engaged(agv_fault_t fault, bool *how) {
-    fixture_init(&f);
-    fixture_active(&f);
-    fixture_run_past(&f, AI);
-    *how = true;
-    fixture_run(&f, 350);
-    expect_no_fault(AGV_STATE_ACTIVE);
-    expect_trip_after(&f, 1, fault, ANGLE_CENTRE);
-    expect_led(&f, 14);
-    *how = false;
-    fixture_run_past(&f, AI);
-    expect_fault(&f, fault, false);
-    expect_reason(&f, fault);
-}
-
-/* Shows: SUP-1, SUP-2, SUP-8, FSM-2, AI_HEARTBEAT_LOST */
+/* Shows: SUP-1, SUP-2, SUP-8, AI_HEARTBEAT_LOST */
 void test_lost(void) {
     check_manual(LOST, &f.traffic[AI].muted);
-    check_engaged(LOST, &f.traffic[AI].muted);
 }
 
-/* Shows: SUP-1, SUP-2, SUP-8, FSM-2, P13, AI_HEARTBEAT_STUCK */
+/* Shows: SUP-1, SUP-2, SUP-8, P13, AI_HEARTBEAT_STUCK */
 void test_stuck(void) {
     check_manual(STUCK, &f.traffic[AI].frozen);
-    check_engaged(STUCK, &f.traffic[AI].frozen);
-}
-
-/* One repeat this long after the last change, then silence. */
-static void check_last_repeat(uint32_t repeat_ms, agv_fault_t expected) {
-    fixture_init(&f);
-    fixture_standby(&f);
-    fixture_run_past(&f, AI);
-    f.traffic[AI].muted = true;
-    f.traffic[AI].frozen = true;
-    fixture_run(&f, repeat_ms);
-    fixture_send_now(&f, AI);
-    fixture_run(&f, 350 - repeat_ms);
-    expect_no_fault(AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_warning(&f, expected, AGV_STATE_STANDBY);
-}
-
-/* A repeat 151 ms after the change is 200 ms old at the deadline, one 150 ms after it is 201 ms old. */
-/* Shows: SUP-2, AI_HEARTBEAT_LOST, AI_HEARTBEAT_STUCK */
-void test_stuck_needs_a_repeat_within_the_last_two_cycles(void) {
-    check_last_repeat(150, LOST);
-    check_last_repeat(151, STUCK);
-}
-
-/* 43Fh byte 8 and no other byte. */
-/* Shows: SUP-1, P3, AI_HEARTBEAT_STUCK */
-void test_only_a_changed_counter_is_a_heartbeat(void) {
-    fixture_standby(&f);
-    fixture_run_past(&f, AI);
-    f.traffic[AI].frozen = true;
-    for (unsigned i = 0; i < 3; i++) {
-        f.traffic[AI].data[i] = 0xFF;
-        f.traffic[AI].data[4] ^= 0xB0; /* lights */
-        fixture_run(&f, 100);
-    }
-    fixture_run(&f, 50);
-    expect_no_fault(AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_warning(&f, STUCK, AGV_STATE_STANDBY);
 }
 
 /* ai_lost_in_manual: trip. */

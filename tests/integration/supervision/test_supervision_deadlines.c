@@ -26,25 +26,6 @@ void test_a_command_out_of_range_refreshes_nothing(void) {
     expect_fault_after(&f, 1, AGV_FAULT_GEAR_COMMAND_TIMEOUT, true);
 }
 
-/* ---- A node that fails completely ---- */
-
-static void check_death(void (*mute)(fixture_t *, bool), agv_message_t last, uint32_t after_ms, agv_fault_t fault,
-                        int32_t hold_raw) {
-    fixture_init(&f);
-    fixture_active(&f);
-    fixture_run_past(&f, last);
-    mute(&f, true);
-    expect_nothing_after(&f, after_ms, fault, AGV_STATE_ACTIVE);
-    expect_trip_after(&f, 1, fault, hold_raw);
-}
-
-/* Shows: SUP-3, STEERING_COMMAND_TIMEOUT, VCU_HEARTBEAT_LOST, EPS_HEARTBEAT_LOST */
-void test_the_first_fault_of_a_dead_node(void) {
-    check_death(fixture_mute_ai, AGV_MSG_STEERING_COMMAND, 125, AGV_FAULT_STEERING_COMMAND_TIMEOUT, ANGLE_CENTRE);
-    check_death(fixture_mute_vcu, AGV_MSG_VEHICLE_STATUS, 50, AGV_FAULT_VCU_HEARTBEAT_LOST, ANGLE_CENTRE);
-    check_death(fixture_mute_eps, AGV_MSG_STEERING_STATUS, 50, AGV_FAULT_EPS_HEARTBEAT_LOST, NO_HOLD);
-}
-
 /* ---- MODE_INVALID: both mode bits for more than 50 ms ---- */
 
 /* While both bits are set the previous mode stays valid. After that there is no mode, so the steering may be held. */

@@ -153,20 +153,6 @@ void test_throttle_in_park(void) {
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_THROTTLE_IN_PARK));
 }
 
-/* An invalid throttle is not used; the previous one stays valid. */
-/* Shows: SUP-5, THROTTLE_IN_PARK */
-void test_an_invalid_throttle_between_does_not_end_throttle_in_park(void) {
-    active_in_park();
-    set_throttle(3);
-    fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
-    fixture_run(&f, 99);
-    set_throttle(255);
-    fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
-    set_throttle(3);
-    expect_nothing_after(&f, 99, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-    expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
-}
-
 /* While bit 8 is clear in the last 363h nothing is judged: budgets and scores are paused. */
 /* Shows: SUP-5, THROTTLE_IN_PARK, EPS_MODE_OFF */
 void test_budgets_are_paused_while_not_judged(void) {

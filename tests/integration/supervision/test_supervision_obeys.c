@@ -28,12 +28,8 @@ static void command_gear(uint8_t gear) {
     send_first_byte(AGV_MSG_GEAR_COMMAND, gear);
 }
 
-static void run_until(uint32_t moment_ms) {
-    fixture_run(&f, moment_ms - f.now_ms);
-}
-
 static void expect_trip_at(agv_fault_t fault, uint32_t moment_ms, int led) {
-    run_until(moment_ms - 1u);
+    walk_run_to(&f, moment_ms - 1u);
     expect_nothing(&f, fault, AGV_STATE_ACTIVE);
     fixture_forget_sent(&f);
     expect_trip_after(&f, 1, fault, ANGLE_CENTRE);
@@ -214,7 +210,7 @@ static void set_speeds(uint16_t counts, int32_t left_mm_s, int32_t right_mm_s) {
 }
 
 static void expect_warning_at(uint32_t moment_ms) {
-    run_until(moment_ms - 1u);
+    walk_run_to(&f, moment_ms - 1u);
     expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
     fixture_run(&f, 1);
     expect_warning(&f, SPEED, AGV_STATE_STANDBY);

@@ -21,12 +21,8 @@ static void measure(uint16_t raw) {
     fixture_run(&f, 1);
 }
 
-static void run_until(uint32_t moment_ms) {
-    fixture_run(&f, moment_ms - f.now_ms);
-}
-
 static void expect_trip_at(uint32_t moment_ms, int32_t hold_raw) {
-    run_until(moment_ms - 1u);
+    walk_run_to(&f, moment_ms - 1u);
     expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
     expect_trip_after(&f, 1, FAULT, hold_raw);
     expect_led(&f, 13);
@@ -147,7 +143,7 @@ static void check_gateway(uint16_t slew_ddeg_s, uint32_t trips_after_ms) {
     fixture_active(&f);
     command(12000);
     const uint32_t began_ms = f.now_ms;
-    run_until(began_ms + trips_after_ms - 1u);
+    walk_run_to(&f, began_ms + trips_after_ms - 1u);
     expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
     fixture_forget_sent(&f);
     expect_trip_after(&f, 1, FAULT, ANGLE_CENTRE);

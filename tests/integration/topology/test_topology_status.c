@@ -85,29 +85,6 @@ void test_the_status_frame_of_a_gateway_has_them_too(void) {
     expect_status(AGV_STATE_ACTIVE, AGV_FAULT_NONE, 1);
 }
 
-/* The HAL accepts nothing: the frame is tried again at each tick, and 100 ms later TX_STALLED is raised. */
-/* Shows: TOP-3, SUP-7, TX_STALLED */
-void test_a_dead_transmitter_shows_within_a_status_frame(void) {
-    f.config.status_frame_id = STATUS_ID;
-    fixture_standby(&f);
-    fixture_run(&f, 110);
-    while (fixture_count_sent(&f, STATUS_ID) < 2) {
-        fixture_run(&f, 1);
-    }
-    const uint8_t before = last_status()->data[3];
-    fixture_forget_sent(&f);
-    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
-    expect_state_after(&f, 100 + 100, AGV_STATE_STANDBY); /* the next one is due after 100 ms */
-    expect_fault(&f, AGV_FAULT_TX_STALLED, false);
-    expect_reason_after(&f, 2, AGV_FAULT_TX_STALLED);
-    expect_output(&f, false);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, STATUS_ID));
-    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
-    fixture_run(&f, 100);
-    TEST_ASSERT_TRUE(fixture_count_sent(&f, STATUS_ID) > 0);
-    TEST_ASSERT_EQUAL_HEX8((uint8_t)(before + 1), fixture_nth_sent(&f, STATUS_ID, 0)->data[3]);
-}
-
 /* ---- Another sender of its identifier ---- */
 
 static const agv_fault_t IN_USE = AGV_FAULT_STATUS_ID_IN_USE;
