@@ -9,9 +9,10 @@
 
 #include "agv/codec.h"
 #include "input.h"
+#include "traffic.h"
 
 /* The fields of a message as numbers, in the order of codec.h. */
-enum { FIELDS_MAX = 10, MESSAGES = 11 };
+enum { FIELDS_MAX = 10, MESSAGES = TRAFFIC_MESSAGES };
 
 typedef int64_t values_t[FIELDS_MAX];
 
@@ -63,20 +64,6 @@ static const uint8_t USED[MESSAGES][8] = {
     {0, 0, 0, 0xFF, 0, 0, 0, 0xFF},
     {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0},
     {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF},
-};
-
-enum {
-    M_SIGNALS,
-    M_GEAR,
-    M_THROTTLE,
-    M_STEERING,
-    M_VEHICLE,
-    M_GEAR_S,
-    M_THROTTLE_S,
-    M_STEERING_S,
-    M_EPS,
-    M_POSITION,
-    M_WHEELS
 };
 
 /* ---- The codec, by number ---- */
@@ -155,10 +142,10 @@ static bool valid_by_hand(unsigned message, const values_t v) {
             return false;
         }
     }
-    if ((message == M_GEAR) || (message == M_GEAR_S)) {
+    if ((message == M_GEAR) || (message == M_GEAR_STATUS)) {
         return (v[0] == 8) || (v[0] == 2) || (v[0] == 4) || (v[0] == 1);
     }
-    if (message == M_EPS) {
+    if (message == M_EPS_STATUS) {
         return ((v[0] >= 0) && (v[0] <= 3)) || (v[0] == 0xFF);
     }
     return true;
@@ -171,7 +158,7 @@ static void fail(unsigned message, const char *what) {
 
 /* The values after packing: rounded to the steps of the message, without reserved alarm bits. */
 static void round_down(unsigned message, values_t v) {
-    if ((message == M_THROTTLE) || (message == M_THROTTLE_S)) {
+    if ((message == M_THROTTLE) || (message == M_THROTTLE_STATUS)) {
         v[0] -= v[0] % 4;
     }
     if (message == M_VEHICLE) {

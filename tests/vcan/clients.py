@@ -34,11 +34,12 @@ CENTRE = 9000
 STATUS_ID = 0x7F0
 STATUS = "status_frame_id: 0x7F0\nstatus_frame_period_ms: 10\n"
 # Deadlines that are not looked at are as long as they can be: then a machine that is busy elsewhere trips nothing.
-PATIENT = STATUS + "".join("%s: %d\n" % item for item in {
+LONGEST_MS = {
     "watchdog_period_ms": 1000, "vcu_heartbeat_timeout_ms": 500, "eps_heartbeat_timeout_ms": 500,
     "ai_heartbeat_timeout_ms": 2000, "gear_command_timeout_ms": 2000, "throttle_command_timeout_ms": 2000,
     "steering_command_timeout_ms": 500, "gear_status_timeout_ms": 1000, "throttle_status_timeout_ms": 500,
-    "eps_status_timeout_ms": 500, "steering_position_timeout_ms": 500, "wheel_speed_timeout_ms": 500}.items())
+    "eps_status_timeout_ms": 500, "steering_position_timeout_ms": 500, "wheel_speed_timeout_ms": 500}
+PATIENT = STATUS + "".join("%s: %d\n" % item for item in LONGEST_MS.items())
 
 # Identifier: cycle and phase in milliseconds, sender.
 MESSAGES = {0x363: (10, 0, "vcu"), 0x050: (10, 1, "vcu"), 0x101: (10, 2, "vcu"), 0x067: (10, 3, "eps"),

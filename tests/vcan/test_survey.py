@@ -29,7 +29,7 @@ class Survey(canbus.Case):
     def test_every_message_is_heard_and_nothing_is_sent(self):
         listener = self.bus()
         player = self.player("vcan0")
-        player.engaged = True
+        player.engage()
         survey = self.survey("--can", "vcan0", "--for", "2s")
         player.stop()
         self.assertEqual(survey["source"], "vcan0")

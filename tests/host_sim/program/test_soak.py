@@ -137,6 +137,8 @@ class Soak(hostsim.Case):
                                     ("old", good.replace(b"agv soak 2", b"agv soak 1", 1), "or another build")):
             self.write(name, content)
             self.assert_refused(self.run_program("soak", "--hours", 100, "--seed", 1, "--checkpoint", name), name, says)
+        device = self.run_program("soak", "--hours", 100, "--seed", 1, "--checkpoint", "/dev/full")
+        self.assert_refused(device, "/dev/full: not a soak checkpoint")
         for other in (("--hours", 100, "--seed", 2), ("--hours", 101, "--seed", 1),
                       ("--hours", 100, "--seed", 1, "--shard", "1/2")):
             self.assert_refused(self.run_program("soak", *other, "--checkpoint", "good"), "another soak")

@@ -38,7 +38,7 @@ void test_bus_off_trips_and_opens_the_output(void) {
     expect_fault(&f, AGV_FAULT_AI_BUS_OFF, false);
 }
 
-/* Every 100 ms. Queued frames are purged with each request. */
+/* After 100 ms. Queued frames are purged with the request. */
 /* Shows: SUP-7, BUS_OFF */
 void test_recovery_is_requested(void) {
     fixture_active(&f);
@@ -50,10 +50,6 @@ void test_recovery_is_requested(void) {
     fixture_run(&f, 1);
     TEST_ASSERT_EQUAL_UINT32(1, recoveries(HAL_CAN_VEHICLE));
     TEST_ASSERT_EQUAL_UINT32(purged + 1, purges(HAL_CAN_VEHICLE));
-    fixture_run(&f, 99);
-    TEST_ASSERT_EQUAL_UINT32(1, recoveries(HAL_CAN_VEHICLE));
-    fixture_run(&f, 1);
-    TEST_ASSERT_EQUAL_UINT32(2, recoveries(HAL_CAN_VEHICLE));
     expect_silence(&f);
 }
 
