@@ -193,24 +193,3 @@ void test_the_gate_refuses_a_forbidden_frame(void) {
     expect_fault_after(&f, 1, AGV_FAULT_TX_GATE_REFUSED, false); /* a transient */
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_TX_GATE_REFUSED));
 }
-
-/* ---- STARTUP_TIMEOUT ---- */
-
-/* 10 s in INIT; ends when INIT is left. */
-/* Shows: STARTUP_TIMEOUT */
-void test_startup_timeout(void) {
-    fixture_mode(&f, MODE_NEITHER);
-    fixture_start(&f);
-    expect_nothing_after(&f, 10000, AGV_FAULT_STARTUP_TIMEOUT, AGV_STATE_INIT);
-    fixture_run(&f, 1);
-    expect_warning(&f, AGV_FAULT_STARTUP_TIMEOUT, AGV_STATE_INIT);
-    expect_led_after(&f, 1, -1);
-    fixture_run(&f, 5000);
-    fixture_mode(&f, MODE_MANUAL);
-    expect_fault_after(&f, 400, AGV_FAULT_STARTUP_TIMEOUT, true);
-    expect_state_after(&f, 200, AGV_STATE_STANDBY);
-    expect_fault(&f, AGV_FAULT_STARTUP_TIMEOUT, false);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_STARTUP_TIMEOUT));
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_STARTUP_TIMEOUT));
-    expect_led(&f, 0);
-}

@@ -62,22 +62,6 @@ void test_an_invalid_angle_is_no_hold_angle(void) {
     expect_held_for_a_second(9050);
 }
 
-/* Shows: FSM-10 */
-void test_without_any_valid_angle_the_first_valid_one_after_the_trip_is_held(void) {
-    fixture_angle(&f, 18001);
-    fixture_standby(&f);
-    fixture_mute_ai(&f, true);
-    walk_trip(&f);
-    fixture_mode(&f, MODE_NEITHER);
-    fixture_run(&f, 100);
-    expect_not_held_for_a_second();
-    fixture_angle(&f, 8000);
-    fixture_run_past(&f, AGV_MSG_STEERING_STATUS);
-    fixture_angle(&f, 8500);
-    fixture_run(&f, 100);
-    expect_held_for_a_second(8000);
-}
-
 /* ---- Only with a healthy EPS ---- */
 
 static void eps_frozen(bool spoilt) {
@@ -422,18 +406,4 @@ void test_after_a_restart_nothing_is_held_before_the_eps_is_alive(void) {
     eps_frozen(false);
     fixture_run(&f, 100);
     expect_held_for_a_second(9100);
-}
-
-/* Shows: FSM-10, FSM-3 */
-void test_a_second_trip_holds_its_own_angle(void) {
-    fixture_angle(&f, 9100);
-    walk_to_safe(&f);
-    fixture_press(&f, 1000);
-    expect_state(&f, AGV_STATE_STANDBY);
-    fixture_angle(&f, 9900);
-    fixture_mode(&f, MODE_NEITHER);
-    fixture_run(&f, 50);
-    walk_trip(&f);
-    fixture_angle(&f, 9100);
-    expect_held_for_a_second(9900);
 }

@@ -82,16 +82,11 @@ static void lose_p_for(uint32_t ms) {
     fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
 }
 
-/* SAFE, and the sums are empty: confirmed for 5 s. */
-static void stay_in_safe(void) {
-    walk_to_safe(&f);
-    expect_state_after(&f, 5100, AGV_STATE_SAFE);
-}
-
-/* 500 ms in all since the trip, with interruptions. */
+/* The sums are empty after 5 s of SAFE; then 500 ms in all, with interruptions. */
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
 void test_a_confirmation_that_comes_and_goes_opens_it(void) {
-    stay_in_safe();
+    walk_to_safe(&f);
+    expect_state_after(&f, 5100, AGV_STATE_SAFE);
     for (unsigned i = 0; i < 4; i++) {
         lose_p_for(100);
         expect_state(&f, AGV_STATE_SAFE);
@@ -105,14 +100,6 @@ void test_a_confirmation_that_comes_and_goes_opens_it(void) {
     lose_p_for(2);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
     expect_open_until_the_reset();
-}
-
-/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
-void test_a_withdrawn_autopilot_off_counts_from_its_withdrawal(void) {
-    stay_in_safe();
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    expect_opens_at(f.now_ms);
 }
 
 static void expect_open_at_once(agv_state_t before, agv_fault_t fault) {
@@ -187,20 +174,6 @@ void test_a_start_opens_it(void) {
     expect_output(&f, true);
     f.hal.config.reset_cause = HAL_RESET_POWER_ON;
     agv_supervisor_start(&f.supervisor, &f.ports, &f.config, f.now_ms); /* the port still has it closed */
-    expect_output(&f, false);
-}
-
-/* The time of the first trip does not shorten the 500 ms of the second one. */
-/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
-void test_a_second_trip_has_its_own_500_ms(void) {
-    walk_to_safe(&f);
-    reset_by_button();
-    fixture_gear(&f, GEAR_D);
-    fixture_run(&f, 50);
-    walk_trip(&f); /* in manual only P is missing */
-    expect_fault_after(&f, 495, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
-    expect_output(&f, true);
-    expect_fault_after(&f, 10, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
     expect_output(&f, false);
 }
 

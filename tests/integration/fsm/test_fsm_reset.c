@@ -381,16 +381,6 @@ void test_safe_commands_that_wait_do_not_leave_after_the_reset(void) {
     TEST_ASSERT_EQUAL_UINT32(dropped, agv_supervisor_counters(&f.supervisor)->dropped);
 }
 
-/* Shows: FSM-3, FSM-4 */
-void test_a_press_from_before_a_second_trip_does_not_reset_it(void) {
-    walk_to_safe(&f);
-    walk_reset(&f, 1000);
-    walk_button(&f, true);
-    fixture_run(&f, 50);
-    walk_trip(&f);
-    expect_no_reset_before_a_new_press();
-}
-
 /* Shows: FSM-3, SUP-8 */
 void test_after_the_reset_the_autopilot_can_be_engaged_again(void) {
     walk_to_safe(&f);

@@ -193,17 +193,6 @@ void test_a_store_that_accepts_nothing_changes_only_the_reason(void) {
     expect_tripped(&f, AGV_FAULT_SUPERVISOR_RESET);
 }
 
-/* The trip is stored in the same call. */
-/* Shows: FSM-7 */
-void test_the_latch_is_stored_in_the_call_that_trips(void) {
-    fixture_active(&f);
-    const uint32_t writes = f.hal.op_calls[SIM_HAL_OP_STORE_WRITE_LATCH];
-    walk_trip(&f);
-    TEST_ASSERT_EQUAL_UINT32(writes + 1, f.hal.op_calls[SIM_HAL_OP_STORE_WRITE_LATCH]);
-    fixture_restart(&f, HAL_RESET_LOCK_UP);
-    expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
-}
-
 /* ---- What cannot be read ---- */
 
 /* Shows: FSM-7 */

@@ -201,22 +201,6 @@ void test_in_safe_each_event_is_copied_once_and_in_order(void) {
     expect_log_holds(next_sequence());
 }
 
-/* It is copied with time for reactions in between. */
-/* Shows: INT-3 */
-void test_at_most_one_event_a_tick_is_copied(void) {
-    fixture_standby(&f);
-    drive_on();
-    events(20);
-    fixture_wheels(&f, 0, 0);
-    const uint32_t began_ms = f.elapsed_ms;
-    while (appended() < next_sequence()) {
-        const uint32_t before = appended();
-        fixture_run(&f, 1);
-        TEST_ASSERT_TRUE(appended() - before <= 1);
-        TEST_ASSERT_TRUE(f.elapsed_ms - began_ms < 80000);
-    }
-}
-
 /* Shows: INT-3 */
 void test_a_flash_that_accepts_nothing_changes_nothing_else(void) {
     walk_to_safe(&f);

@@ -345,22 +345,6 @@ static void set_alarm(bool on) {
     f.traffic[VCU].data[4] = on ? 0x08 : 0;
 }
 
-/* Shows: SUP-4, SUP-8, FSM-2, VCU_AI_CAN_LOST */
-void test_the_vcus_ai_alarm_while_engaged(void) {
-    fixture_active(&f);
-    set_alarm(true);
-    fixture_run_before(&f, VCU);
-    expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
-    expect_led(&f, 14);
-    set_alarm(false);
-    fixture_run_past(&f, VCU);
-    expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, false);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_VCU_AI_CAN_LOST));
-    expect_reason(&f, AGV_FAULT_VCU_AI_CAN_LOST);
-}
-
 /* No longer engaged: the alarm does not count, although the bit is set. */
 /* Shows: SUP-8, VCU_AI_CAN_LOST */
 void test_the_vcus_ai_alarm_ends_with_the_engagement(void) {

@@ -68,12 +68,3 @@ void test_mode_invalid_in_init(void) {
     expect_state_after(&f, 2000, AGV_STATE_INIT);
     expect_reason(&f, AGV_FAULT_NONE);
 }
-
-/* Neither bit set is no fault, and means not engaged. */
-/* Shows: MODE_INVALID */
-void test_neither_mode_is_not_engaged(void) {
-    fixture_active(&f);
-    fixture_mode(&f, MODE_NEITHER);
-    expect_state_after(&f, 500, AGV_STATE_STANDBY);
-    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
-}

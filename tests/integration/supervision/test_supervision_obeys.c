@@ -233,17 +233,3 @@ void test_two_measurements_of_speed(void) {
     expect_fault_after(&f, 1, SPEED, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, SPEED));
 }
-
-/* Nothing is compared until the VCU has reported a speed. */
-/* Shows: SUP-12, SPEED_IMPLAUSIBLE */
-void test_a_vcu_that_reports_no_speed(void) {
-    fixture_standby(&f);
-    set_speeds(0, 5000, 5000);
-    expect_nothing_after(&f, 5000, SPEED, AGV_STATE_STANDBY);
-    fixture_speed(&f, 1);
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    fixture_speed(&f, 0);
-    expect_nothing_after(&f, 999, SPEED, AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_warning(&f, SPEED, AGV_STATE_STANDBY);
-}

@@ -28,19 +28,8 @@ static void expect_trip_at(uint32_t moment_ms, int32_t hold_raw) {
     expect_led(&f, 13);
 }
 
-/* Shows: SUP-10, FSM-2, STEERING_DEVIATION */
-void test_more_than_50_degrees_for_500_ms(void) {
-    static const uint16_t COMMANDS[] = {9501, 8499, 18000, 0};
-    for (unsigned i = 0; i < 4; i++) {
-        fixture_init(&f);
-        fixture_active(&f);
-        command(COMMANDS[i]);
-        expect_trip_at(f.now_ms + 500u, ANGLE_CENTRE);
-    }
-}
-
 /* 50.0 degrees are no deviation: the budget of 500 ms takes 1000 ms to decrease to 0. */
-/* Shows: SUP-10, STEERING_DEVIATION */
+/* Shows: SUP-10, FSM-2, STEERING_DEVIATION */
 void test_a_deviation_ends_when_its_budget_is_empty(void) {
     fixture_active(&f);
     command(9501);
@@ -106,17 +95,6 @@ void test_a_command_out_of_range_is_no_command(void) {
     expect_reason(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
     expect_fault_after(&f, 2000, FAULT, false);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, FAULT));
-}
-
-/* An invalid measured angle is not used; the last valid one stays. */
-/* Shows: SUP-10, P5, STEERING_DEVIATION */
-void test_an_invalid_angle_is_no_measured_angle(void) {
-    f.config.status_invalid_frames = 10;
-    fixture_active(&f);
-    measure(18001); /* would be 900 degrees off */
-    fixture_run(&f, 80);
-    measure(9000);
-    expect_nothing_after(&f, 600, FAULT, AGV_STATE_ACTIVE);
 }
 
 /* Limits and times are settings. */

@@ -34,24 +34,6 @@ void test_after_an_overrun_one_frame_each_and_the_others_are_skipped_and_counted
     TEST_ASSERT_EQUAL_UINT32(20, skipped());
 }
 
-/* Late by less than a cycle: nothing is skipped, and the slots stay where they were. */
-/* Shows: TIM-1 */
-void test_a_late_step_moves_no_slot(void) {
-    walk_to_tripped(&f);
-    const uint32_t trip_ms = f.now_ms;
-    fixture_run(&f, 90);
-    fixture_run_without_ticks(&f, 70);
-    fixture_forget_sent(&f);
-    fixture_jump(&f, 0);
-    TEST_ASSERT_EQUAL_UINT32(160, fixture_nth_sent(&f, 0x43F, 0)->time_ms - trip_ms);
-    TEST_ASSERT_EQUAL_UINT32(160, fixture_nth_sent(&f, 0x075, 0)->time_ms - trip_ms);
-    fixture_forget_sent(&f);
-    fixture_run(&f, 100);
-    expect_next(0x43F, trip_ms, 200);
-    expect_next(0x168, trip_ms, 166);
-    expect_next(0x075, trip_ms, 233);
-}
-
 /* A sender of the same identifier in step with the supervisor would collide with each of its frames. */
 /* Shows: TIM-1, SUP-7, ERROR_PASSIVE */
 void test_while_error_passive_each_cycle_is_3_ms_longer(void) {

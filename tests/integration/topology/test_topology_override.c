@@ -175,17 +175,6 @@ void test_while_error_passive_a_late_tick_overrides_what_came_before_it(void) {
     TEST_ASSERT_EQUAL_HEX32(0x43F, f.sent[0].id);
 }
 
-/* Shows: TOP-1, ERROR_PASSIVE */
-void test_while_error_passive_a_43f_is_overridden_too(void) {
-    tripped();
-    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_PASSIVE);
-    settle();
-    foreign_signals(0x30);
-    fixture_run(&f, 2);
-    TEST_ASSERT_EQUAL_UINT32(1, f.sent_count);
-    TEST_ASSERT_EQUAL_HEX32(0x43F, f.sent[0].id);
-}
-
 /* Shows: TOP-1, P14 */
 void test_a_command_that_does_not_differ_is_not_overridden(void) {
     tripped();
@@ -269,15 +258,6 @@ void test_the_vehicle_side_of_a_gateway_is_overridden_too(void) {
     expect_silence(&f);
 }
 
-/* Shows: TOP-1, TOP-2 */
-void test_the_ai_side_of_a_gateway_is_not_overridden(void) {
-    static const uint8_t drive[8] = {GEAR_D};
-    f.config.topology = AGV_TOPOLOGY_GATEWAY;
-    tripped();
-    fixture_frame(&f, AGV_MSG_GEAR_COMMAND, drive); /* comes from the AI side */
-    expect_silence(&f);
-}
-
 /* Shows: TOP-1, FSM-10 */
 void test_a_steering_command_is_not_overridden_while_none_is_sent(void) {
     static const uint8_t angle[8] = {0x00, 0x10};
@@ -301,19 +281,10 @@ static void expect_next_after(uint32_t id, uint32_t answered_ms, uint32_t half_m
 /* 25 ms have no half in whole milliseconds: 12. */
 /* Shows: TOP-1, TIM-1 */
 void test_after_an_override_the_next_periodic_frame_is_due_half_a_cycle_later(void) {
-    static const uint8_t pull[8] = {200};
     static const uint8_t angle[8] = {0x00, 0x10};
     tripped();
     foreign_gear(GEAR_D);
     expect_next_after(0x168, f.now_ms, 50, 100);
-    fixture_init(&f);
-    tripped();
-    foreign_signals(0x80);
-    expect_next_after(0x43F, f.now_ms, 50, 100);
-    fixture_init(&f);
-    tripped();
-    foreign(0x075, 8, pull);
-    expect_next_after(0x075, f.now_ms, 50, 100);
     fixture_init(&f);
     tripped();
     foreign(0x065, 8, angle);
