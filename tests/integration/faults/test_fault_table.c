@@ -1,5 +1,4 @@
-/* The table of faults: name, rank, default class and LED code, by hand; classes that the configuration may change; the
- * fault on the LED when several are active. */
+/* The table of faults: name, rank, default class and LED code, by hand; classes that the configuration may change. */
 #include "agv/names.h"
 #include "causes.h"
 #include "one_fixture.h"
@@ -63,32 +62,6 @@ void test_some_trips_may_be_made_warnings(void) {
     f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
     fixture_start(&f);
     expect_state_after(&f, 2000, AGV_STATE_INIT); /* for standstill */
-}
-
-/* ---- The LED shows one of them ---- */
-
-/* Warnings by rank; a trip before any of them; the latched reason also after it has ended. */
-/* Shows: LED-1, VCU_LEVEL2_ALARM, ERROR_PASSIVE */
-void test_the_led_shows_the_highest(void) {
-    fixture_standby(&f);
-    expect_led(&f, 0);
-    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_PASSIVE);
-    expect_led_after(&f, 1, 14);
-    f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0x01; /* level 2 alarm: no code */
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    expect_led(&f, -1);
-    f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x10; /* above 110 degrees */
-    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
-    expect_led(&f, 13);
-    f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x02; /* remote power: a trip */
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    expect_led(&f, 16);
-    f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0;
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    expect_led(&f, 16);
-    f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x80; /* S-driver: ranks higher */
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    expect_led(&f, 8);
 }
 
 /* A warning is counted when it is raised, not when it ends. Trips are not counted. */

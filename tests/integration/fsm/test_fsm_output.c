@@ -3,8 +3,7 @@
 #include "walk.h"
 
 static void reset_by_button(void) {
-    fixture_press(&f, 1020);
-    expect_state(&f, AGV_STATE_STANDBY);
+    walk_reset(&f, 1020);
 }
 
 /* Shows: FSM-4 */

@@ -126,8 +126,7 @@ void test_at_standstill_in_init_p_is_sent_when_the_vehicle_stands(void) {
 void test_at_standstill_a_second_trip_waits_anew(void) {
     f.config.park = AGV_PARK_AT_STANDSTILL;
     walk_to_safe(&f);
-    fixture_press(&f, 1000);
-    expect_state(&f, AGV_STATE_STANDBY);
+    walk_reset(&f, 1000);
     fixture_drive(&f, 300);
     fixture_run(&f, 200);
     fixture_forget_sent(&f);

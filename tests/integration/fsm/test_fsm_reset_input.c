@@ -49,10 +49,7 @@ void test_with_can_the_push_button_resets_nothing(void) {
     push_for(1500);
     expect_state(&f, AGV_STATE_SAFE);
     expect_refusals(0, 0);
-    walk_button(&f, true);
-    fixture_run(&f, 1000);
-    walk_button(&f, false);
-    expect_state(&f, AGV_STATE_STANDBY);
+    walk_reset(&f, 1000);
 }
 
 /* Shows: HW-3 */
@@ -61,10 +58,7 @@ void test_with_both_either_button_resets(void) {
     push_for(1000);
     expect_state(&f, AGV_STATE_STANDBY);
     choose(AGV_RESET_INPUT_BOTH);
-    walk_button(&f, true);
-    fixture_run(&f, 1000);
-    walk_button(&f, false);
-    expect_state(&f, AGV_STATE_STANDBY);
+    walk_reset(&f, 1000);
 }
 
 /* A press in vain is reported with what was missing, also while the other button is not touched. */
@@ -190,8 +184,5 @@ void test_a_closed_contact_of_a_closed_output_does_not_hinder_the_reset(void) {
     walk_to_safe(&f);
     expect_output(&f, true);
     fixture_run(&f, 1100);
-    walk_button(&f, true);
-    fixture_run(&f, 1000);
-    walk_button(&f, false);
-    expect_state(&f, AGV_STATE_STANDBY);
+    walk_reset(&f, 1000);
 }

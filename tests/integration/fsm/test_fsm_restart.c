@@ -116,8 +116,7 @@ void test_after_a_restart_a_reset_is_possible_and_forgets_the_latch(void) {
     walk_to_safe(&f);
     fixture_restart(&f, HAL_RESET_WATCHDOG);
     expect_state_after(&f, 1500, AGV_STATE_SAFE);
-    fixture_press(&f, 1050);
-    expect_state(&f, AGV_STATE_STANDBY);
+    walk_reset(&f, 1050);
     fixture_restart(&f, HAL_RESET_WATCHDOG);
     expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET); /* not the earlier alarm */
 }
@@ -133,8 +132,7 @@ void test_a_power_on_that_starts_tripped(void) {
     expect_state_after(&f, 1500, AGV_STATE_SAFE);
     expect_state_after(&f, 10000, AGV_STATE_SAFE);
     expect_output(&f, false);
-    fixture_press(&f, 1000);
-    expect_state(&f, AGV_STATE_STANDBY);
+    walk_reset(&f, 1000);
     expect_output(&f, true);
     walk_trip(&f);
     f.store.keep_latch = true;
@@ -165,8 +163,7 @@ void test_after_power_on_changes_no_other_reset(void) {
     f.config.after_power_on = AGV_AFTER_POWER_ON_TRIPPED;
     fixture_start(&f);
     fixture_run(&f, 2500);
-    fixture_press(&f, 1000);
-    expect_state(&f, AGV_STATE_STANDBY);
+    walk_reset(&f, 1000);
     walk_trip(&f);
     fixture_restart(&f, HAL_RESET_WATCHDOG);
     expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);

@@ -34,8 +34,7 @@ static void expect_ends_when_the_wheels_stand(agv_fault_t fault) {
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, fault));
     expect_output(&f, false);
     expect_state_after(&f, 1500, AGV_STATE_SAFE);
-    fixture_press(&f, 1000);
-    expect_state(&f, AGV_STATE_STANDBY);
+    walk_reset(&f, 1000);
     expect_output(&f, true);
 }
 
@@ -173,8 +172,7 @@ void test_cases_that_are_not_moving_while_safe(void) {
     expect_fault_after(&f, 3000, AGV_FAULT_MOVING_WHILE_SAFE, false);
     fixture_drive(&f, 0);
     fixture_run(&f, 1500);
-    fixture_press(&f, 1000);
-    expect_state(&f, AGV_STATE_STANDBY);
+    walk_reset(&f, 1000);
     fixture_drive(&f, 1000);
     expect_state_after(&f, 10000, AGV_STATE_STANDBY);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_MOVING_WHILE_SAFE));

@@ -15,8 +15,7 @@ void setUp(void) {
 static void reset(void) {
     fixture_vehicle_confirms(&f);
     fixture_run(&f, 1500);
-    fixture_press(&f, 1000);
-    expect_state(&f, AGV_STATE_STANDBY);
+    walk_reset(&f, 1000);
 }
 
 /* The 363h that begins an engagement, now. */

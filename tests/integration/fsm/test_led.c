@@ -2,59 +2,16 @@
 #include "one_fixture.h"
 #include "walk.h"
 
-/* n flashes of 200 ms on and 200 ms off, then 1.4 s dark. */
-static bool flashes(unsigned n, unsigned ms) {
-    const unsigned within = ms % (n * 400 + 1400);
-    return within < n * 400 && within % 400 < 200;
-}
-
-/* The pattern begins in the tick that comes next. Three times over. */
-static void expect_flashes(unsigned n) {
-    for (unsigned ms = 0; ms < 3 * (n * 400 + 1400); ms++) {
-        fixture_run(&f, 1);
-        TEST_ASSERT_EQUAL_INT_MESSAGE(flashes(n, ms), f.hal.led.on, f.what);
-    }
-    expect_led(&f, (int)n);
-}
-
-/* The driving vehicle reports this alarm once; the AI computer is silent from then on. */
-static void trip_by_alarm(uint8_t alarms) {
-    fixture_init(&f);
-    f.long_run = true;
-    fixture_active(&f);
-    fixture_mute_ai(&f, true);
-    fixture_vehicle_confirms(&f); /* later, so that nothing is unconfirmed */
-    walk_alarm(&f, alarms);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    walk_alarm(&f, ALARM_NONE);
-    expect_state(&f, AGV_STATE_TRIPPED);
-}
-
-/* Shows: LED-1, S_DRIVER_ALARM, REMOTE_SIGNAL_LOST, REMOTE_POWER_LOST, VCU_EPS_HARDWARE_FAULT, VCU_EPS_CAN_BUS_FAULT */
-void test_code_n_is_n_flashes_and_1_4_s_dark(void) {
-    static const struct {
-        uint8_t alarms;
-        unsigned code;
-    } ROWS[] = {
-        {ALARM_S_DRIVER, 8}, {ALARM_REMOTE_SIGNAL, 17}, {ALARM_REMOTE_POWER, 16}, {ALARM_EPS_HARDWARE, 13}, {0x20, 12}};
-    for (unsigned i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
-        trip_by_alarm(ROWS[i].alarms);
-        expect_flashes(ROWS[i].code);
-    }
-}
-
 /* ---- Priority of faults ---- */
 
 /* Shows: LED-1, FSM-5 */
 void test_a_latched_trip_is_shown_until_the_reset(void) {
-    trip_by_alarm(ALARM_S_DRIVER);
+    f.long_run = true;
+    walk_to_safe(&f);
     expect_state_after(&f, 20000, AGV_STATE_SAFE);
     expect_led(&f, 8);
-    fixture_button(&f, true);
-    fixture_run(&f, 1050);
-    fixture_button(&f, false);
-    expect_state_after(&f, 10, AGV_STATE_STANDBY);
-    expect_led(&f, 0);
+    walk_reset(&f, 1050);
+    expect_led_after(&f, 1, 0);
 }
 
 /* At once, also where a lost AI computer has the same class in manual as when engaged. */
@@ -79,8 +36,7 @@ void test_a_trip_of_one_instant_is_shown(void) {
     fixture_vehicle_confirms(&f);
     sim_hal_set_can_state(&f.hal, HAL_CAN_AI, HAL_CAN_BUS_OFF);
     expect_state_after(&f, 1000, AGV_STATE_SAFE);
-    fixture_press(&f, 1050);
-    expect_state(&f, AGV_STATE_STANDBY);
+    walk_reset(&f, 1050);
     expect_led_after(&f, 500, 14);
     fixture_mode(&f, MODE_ENGAGED);
     fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);

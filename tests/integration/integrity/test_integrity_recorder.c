@@ -222,8 +222,7 @@ void test_a_trip_is_kept_after_the_reset(void) {
     TEST_ASSERT_FALSE(agv_recorder_get_trip(&f.recorder, 0, &trip));
     fixture_init(&f);
     walk_to_safe(&f);
-    fixture_press(&f, 1050);
-    expect_state(&f, AGV_STATE_STANDBY);
+    walk_reset(&f, 1050);
     events(200);
     TEST_ASSERT_FALSE(is_there(0));
     fixture_restart(&f, HAL_RESET_POWER_ON);
@@ -242,8 +241,7 @@ void test_a_flipped_bit_in_the_head_of_the_recorder_changes_no_decision(void) {
         walk_to_safe(&f);
         ((uint8_t *)&f.recorder)[bit / 8] ^= (uint8_t)(1u << (bit % 8));
         expect_state_after(&f, 20, AGV_STATE_SAFE);
-        fixture_press(&f, 1050);
-        expect_state(&f, AGV_STATE_STANDBY);
+        walk_reset(&f, 1050);
     }
 }
 

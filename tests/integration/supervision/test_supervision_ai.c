@@ -230,10 +230,7 @@ void test_lost_in_init(void) {
 static void reset(void) {
     fixture_vehicle_confirms(&f);
     expect_state_after(&f, 300, AGV_STATE_SAFE);
-    fixture_button(&f, true);
-    fixture_run(&f, 1100);
-    fixture_button(&f, false);
-    expect_state_after(&f, 20, AGV_STATE_STANDBY);
+    walk_reset(&f, 1100);
     fixture_forget_sent(&f);
 }
 

@@ -125,10 +125,7 @@ void test_a_vehicle_that_stands_in_safe_for_longer_than_the_clock_can_be_reset(v
         expect_state(&f, AGV_STATE_SAFE);
     }
     fixture_run(&f, 1500);
-    fixture_button(&f, true);
-    fixture_run(&f, 1050);
-    fixture_button(&f, false);
-    expect_state_after(&f, 10, AGV_STATE_STANDBY);
+    walk_reset(&f, 1050);
 }
 
 /* 065h is due 25 ms and 50 ms after the trip, 075h 33 ms: a step 60 ms after it skips one slot, although nothing is sent. */

@@ -5,10 +5,7 @@
 /* Shows: TIM-3 */
 void test_the_watchdog_is_fed_in_every_state_while_all_activities_check_in(void) {
     walk_to_safe(&f);
-    fixture_button(&f, true);
-    fixture_run(&f, 1100);
-    fixture_button(&f, false);
-    expect_state_after(&f, 10, AGV_STATE_STANDBY);
+    walk_reset(&f, 1100);
     TEST_ASSERT_EQUAL_UINT32(0, f.hal.bites);
     for (unsigned i = 0; i < 50; i++) {
         const uint32_t feeds = f.hal.feeds;

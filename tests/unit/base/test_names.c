@@ -6,16 +6,6 @@
 
 #include "unity.h"
 
-void test_every_fault_is_found_by_its_name(void) {
-    for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
-        const char *name = agv_fault_name((agv_fault_t)i);
-        TEST_ASSERT_NOT_NULL(name);
-        TEST_ASSERT_EQUAL_UINT(i, agv_fault_from_name(name));
-    }
-    TEST_ASSERT_EQUAL_STRING("EPS_HEARTBEAT_LOST", agv_fault_name(AGV_FAULT_EPS_HEARTBEAT_LOST));
-    TEST_ASSERT_EQUAL_STRING("SELF_TEST_FAILED", agv_fault_name((agv_fault_t)0));
-}
-
 void test_an_invalid_fault_has_no_name(void) {
     TEST_ASSERT_NULL(agv_fault_name(AGV_FAULT_NONE));
     TEST_ASSERT_NULL(agv_fault_name((agv_fault_t)255));
