@@ -79,20 +79,6 @@ void test_a_status_on_the_other_identifier_is_never_accepted(void) {
     }
 }
 
-/* While driving: the own identifier falls silent and the other one begins. */
-/* Shows: P1, WRONG_ID_SET, AI_HEARTBEAT_LOST */
-void test_an_identifier_that_changes_while_driving(void) {
-    for (unsigned i = 0; i < SET_COUNT; i++) {
-        init(&SETS[i]);
-        fixture_active(&f);
-        fixture_run_past(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
-        f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].id = SETS[i].other_command_id;
-        expect_reason_after(&f, 351, AGV_FAULT_AI_HEARTBEAT_LOST);
-        expect_fault_after(&f, 149, WRONG, false);
-        expect_fault_after(&f, 1, WRONG, true);
-    }
-}
-
 /* One more on the other identifier, while its own goes on, is not a wrong set. */
 /* Shows: P1, WRONG_ID_SET */
 void test_both_identifiers_at_once(void) {
