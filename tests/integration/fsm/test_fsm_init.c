@@ -32,14 +32,6 @@ void test_init_sends_the_safe_commands_beginning_as_after_a_trip(void) {
     TEST_ASSERT_EQUAL_UINT32(3 + 3 + 4, f.sent_count); /* 075h once more at 233 ms */
 }
 
-/* Shows: FSM-10 */
-void test_init_sends_no_steering_command_though_the_angle_is_known(void) {
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_start(&f);
-    expect_state_after(&f, 2000, AGV_STATE_INIT);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
-}
-
 /*
  * 363h comes at 1 and 11 ms (the second one shows a changed counter), 067h at 4 and 14 ms, 0A3h at 7 ms: from 14 ms on
  * all conditions hold.
@@ -202,14 +194,6 @@ void test_conditions_that_do_not_keep_init(void) {
     fixture_wheels(&f, 49, -49); /* these values count as standstill */
     fixture_speed(&f, 180);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0x01; /* level 2 alarm */
-    fixture_start(&f);
-    expect_state_after(&f, 514, AGV_STATE_STANDBY);
-}
-
-/* Shows: FSM-7 */
-void test_the_speed_of_the_vcu_may_be_left_out(void) {
-    f.config.standstill_vcu_counts = AGV_STANDSTILL_VCU_ANY;
-    fixture_speed(&f, 65535);
     fixture_start(&f);
     expect_state_after(&f, 514, AGV_STATE_STANDBY);
 }

@@ -1,4 +1,4 @@
-/* The first reason, unresettable faults, and the alive counter of the supervisor's 43Fh. */
+/* Unresettable faults, and the alive counter of the supervisor's 43Fh. */
 #include <stddef.h>
 
 #include "one_fixture.h"
@@ -8,22 +8,6 @@ static void press_for(uint32_t ms) {
     fixture_button(&f, false);
     fixture_run(&f, 20);
     fixture_press(&f, ms);
-}
-
-/* ---- The first reason ---- */
-
-/* Shows: FSM-5 */
-void test_the_reason_goes_with_the_reset_and_the_recorder_keeps_it(void) {
-    agv_event_t event = {0};
-    walk_to_safe(&f);
-    press_for(1100);
-    expect_state(&f, AGV_STATE_STANDBY);
-    expect_reason(&f, AGV_FAULT_NONE);
-    TEST_ASSERT_TRUE(fixture_last_raised(&f, AGV_FAULT_S_DRIVER_ALARM, &event));
-    TEST_ASSERT_EQUAL_UINT8(AGV_CLASS_TRIP, event.b);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_events(&f, AGV_EVENT_STATE, AGV_STATE_ACTIVE, ANY, &event));
-    TEST_ASSERT_EQUAL_HEX8(AGV_STATE_TRIPPED, event.b);
-    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_S_DRIVER_ALARM, event.c);
 }
 
 /* ---- Unresettable faults ---- */

@@ -381,18 +381,6 @@ void test_safe_commands_that_wait_do_not_leave_after_the_reset(void) {
     TEST_ASSERT_EQUAL_UINT32(dropped, agv_supervisor_counters(&f.supervisor)->dropped);
 }
 
-/* Shows: FSM-3, SUP-8 */
-void test_after_the_reset_the_autopilot_can_be_engaged_again(void) {
-    walk_to_safe(&f);
-    walk_reset(&f, 1000);
-    fixture_forget_sent(&f);
-    fixture_mute_ai(&f, false);
-    fixture_run(&f, 300);
-    fixture_mode(&f, MODE_ENGAGED);
-    expect_state_after(&f, 1000, AGV_STATE_ACTIVE);
-    expect_silence(&f);
-}
-
 /* The throttle is at idle since the frames of a late step: of its 99 ms, 10 count. */
 /* Shows: FSM-3, TIM-4 */
 void test_of_a_late_step_10_ms_count_for_the_conditions(void) {
