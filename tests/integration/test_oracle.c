@@ -1,5 +1,5 @@
-/* The oracle itself: it allows the safe commands and reports each kind of forbidden frame. That it finds wrong angles and
- * frames that a gateway may not pass is shown by the seeded faults of tests/proofs, too. */
+/* The oracle itself: it allows the safe commands and reports each kind of forbidden frame. That it drops the
+ * angle in manual is shown by a seeded fault of tests/proofs/explorer. */
 #include "oracle.h"
 #include "unity.h"
 
@@ -91,6 +91,77 @@ void test_the_held_angle_is_that_of_the_moment_of_the_trip(void) {
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_SAFE));
     TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_SAFE));
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_INIT));
+}
+
+/* Shows: FSM-6, FSM-10 */
+void test_an_eps_that_could_not_take_angles_gets_a_new_one(void) {
+    hal_can_frame_t status = {.id = 0x167, .length = 8, .data = {0, 0, 0, 1, 0, 0, 0, 0}};
+    measured(9200);
+    oracle_returned(&oracle, AGV_STATE_TRIPPED);
+    measured(9100);
+    oracle_heard(&oracle, HAL_CAN_VEHICLE, &status);
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_TRIPPED)); /* 9100 */
+    status.data[7] = 0x02;                                                                            /* over-voltage */
+    oracle_heard(&oracle, HAL_CAN_VEHICLE, &status);
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_TRIPPED));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED)); /* 9200 */
+}
+
+/* Shows: FSM-6, FSM-10 */
+void test_after_a_restart_the_first_valid_angle_is_held(void) {
+    measured(9200);
+    oracle_restart(&oracle);
+    oracle_returned(&oracle, AGV_STATE_TRIPPED);
+    measured(18001);
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED));
+    measured(9100);
+    measured(9200);
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_TRIPPED));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED));
+}
+
+/* Shows: FSM-6, FSM-10 */
+void test_an_angle_of_more_than_50_ms_before_the_trip_is_not_held(void) {
+    measured(9200);
+    oracle.now_ms = 50;
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED));
+    oracle_returned(&oracle, AGV_STATE_STANDBY);
+    oracle.now_ms = 51;
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED));
+    measured(9100);
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_TRIPPED));
+}
+
+/* A tick that is 51 ms late: the frames before it were handled late. */
+/* Shows: FSM-6, FSM-10 */
+void test_a_late_tick_replaces_an_angle_of_the_frames_before_it(void) {
+    measured(9200);
+    oracle_returned(&oracle, AGV_STATE_TRIPPED);
+    measured(9100);
+    oracle_tick(&oracle, 50);
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED)); /* 9200 */
+    oracle_tick(&oracle, 101);
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED));
+    oracle_restart(&oracle);
+    measured(9200);
+    oracle_returned(&oracle, AGV_STATE_TRIPPED);
+    oracle.now_ms = 102;
+    measured(9100); /* 8C 23 */
+    oracle_tick(&oracle, 152);
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_TRIPPED));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED));
+}
+
+/* Shows: FSM-6, TOP-2 */
+void test_a_gateway_passes_only_motion_that_the_mode_allows(void) {
+    oracle.gateway = true;
+    oracle_returned(&oracle, AGV_STATE_ACTIVE);
+    reported(0x40); /* one 363h does not end the engagement */
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 1, 0), AGV_STATE_ACTIVE));
+    reported(0xC0);
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x28, 0x23), AGV_STATE_ACTIVE));
+    reported(0x80);
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 1, 0), AGV_STATE_ACTIVE));
 }
 
 /* Shows: FSM-6, TOP-2 */
