@@ -2,14 +2,14 @@
  * @file codec.h
  * Pack and unpack the payload of each of the 11 messages.
  *
- * All functions are pure and have no loops. They work on the 8 payload bytes of a frame; the caller has already checked
+ * The functions have no state and no loops. They work on the 8 payload bytes of a frame; the caller has already checked
  * the DLC. They never keep a pointer. Pointers must not be NULL, and payload and struct must not overlap.
  *
  * - `agv_pack_X(data, &in)` checks every field. If all are in range, it writes all 8 bytes (reserved bits as 0, P14) and
  *   returns true. Otherwise it returns false and leaves @p data unchanged.
  * - `agv_unpack_X(&out, data)` ignores reserved bits and writes every field of @p out. It returns false if a field holds
- *   a value that the protocol does not define. That field then holds the raw value and must not be used; the other
- *   fields (alive counter, fault bits) are valid.
+ *   a value that the protocol does not define. That field then holds the scaled value, out of its range, and must not be
+ *   used; the other fields (alive counter, fault bits) are valid.
  *
  * Requirements: P2 to P14, P18 (docs/protocol.md).
  */

@@ -112,10 +112,10 @@ bool agv_unpack_turn_signal_command(agv_turn_signal_command_t *out, const uint8_
     const uint32_t flags = data[4];
 
     out->alive_counter = data[7];
-    out->turn_left_on = (flags & 0x10u) != 0u;
-    out->turn_right_on = (flags & 0x20u) != 0u;
-    out->autopilot_off = (flags & 0x40u) != 0u;
-    out->headlight_on = (flags & 0x80u) == 0u;
+    out->turn_left_on = (flags & AGV_SIGNAL_LEFT) != 0u;
+    out->turn_right_on = (flags & AGV_SIGNAL_RIGHT) != 0u;
+    out->autopilot_off = (flags & AGV_SIGNAL_AUTOPILOT_OFF) != 0u;
+    out->headlight_on = (flags & AGV_SIGNAL_HEADLIGHT_OFF) == 0u;
     return true;
 }
 
