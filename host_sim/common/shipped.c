@@ -61,6 +61,14 @@ static int compare(const void *a, const void *b) {
     return strcmp(a, b);
 }
 
+/** Without the ending of a scenario; 0: it is none, such as a copy of an editor. */
+static size_t name_length(const char *file) {
+    static const char ending[] = ".yaml";
+    const size_t length = strlen(file);
+    const size_t without = (length > strlen(ending)) ? length - strlen(ending) : 0u;
+    return (strcmp(&file[without], ending) == 0) ? without : 0u;
+}
+
 /** Add the scenarios of a folder. */
 static void add_scenarios_of(names_t *names, const char *path) {
     DIR *folder = opendir(path);
@@ -68,8 +76,7 @@ static void add_scenarios_of(names_t *names, const char *path) {
         return;
     }
     for (const struct dirent *entry = readdir(folder); entry != NULL; entry = readdir(folder)) {
-        const char *end = strstr(entry->d_name, ".yaml");
-        const size_t length = (end != NULL) ? (size_t)(end - entry->d_name) : 0u;
+        const size_t length = name_length(entry->d_name);
         if ((length > 0u) && (length < (size_t)NAME_SIZE) && (names->count < (size_t)SCENARIOS_MAX)) {
             (void)snprintf(names->names[names->count], NAME_SIZE, "%.*s", (int)length, entry->d_name);
             names->count++;

@@ -229,6 +229,8 @@ static void print_not_supervised(const live_t *live) {
     text_add(&text, "never left INIT");
     if (live->missing != 0u) {
         text_add(&text, ", missing: %s", missing_text(live->missing, words));
+    } else {
+        text_add(&text, "; it ended before startup_timeout_ms: --why says what was missing");
     }
     why_text_line(label, (int)strlen(label), text.bytes);
 }

@@ -28,8 +28,6 @@
 #define CANDUMP_FRAMELESS_MAX (1024ull << 20u)
 /** @} */
 
-#define CANDUMP_GAP_MAX_US 8640000000000u /**< the longest that a log may be silent: 100 days */
-
 /** The format of a log. */
 typedef enum { CANDUMP_FORMAT_UNKNOWN, CANDUMP_FORMAT_LOG, CANDUMP_FORMAT_SCREEN, CANDUMP_FORMAT_ASC } candump_format_t;
 

@@ -55,9 +55,9 @@ static bool time_of_day(log_token_t token, civil_t *civil, uint64_t *fraction_us
     uint64_t us = 0u;
     const bool good = log_token_number(hour, DECIMAL, BYTE_MAX, &civil->hour) &&
                       log_token_number(minute, DECIMAL, BYTE_MAX, &civil->minute) && log_token_seconds(rest, &us);
-    civil->second = (uint32_t)((us / US_PER_S) % BYTE_MAX);
+    civil->second = (uint32_t)(us / US_PER_S);
     *fraction_us = us % US_PER_S;
-    return good;
+    return good && (us / US_PER_S <= (uint64_t)BYTE_MAX);
 }
 
 /** Read "Fri Nov 20 10:32:04.100 am 2026"; what is no date leaves the start as it is. */
@@ -312,8 +312,11 @@ const char *vector_asc_parse(vector_asc_t *asc, const char *line, size_t length,
         return take_header(asc, first, &rest);
     }
     (void)memset(&record->frame, 0, sizeof record->frame);
-    asc->last_us = asc->is_relative ? (asc->last_us + us) : us;
-    record->stamp_us = asc->start_us + asc->last_us;
+    const uint64_t at_us = asc->is_relative ? (asc->last_us + us) : us;
+    record->stamp_us = asc->start_us + at_us;
+    if (!asc->is_relative || (us <= CANDUMP_GAP_MAX_US)) {
+        asc->last_us = at_us; /* a line with a wild stamp does not shift those behind it */
+    }
     const log_token_t kind = next(&rest);
     uint32_t channel = 0u;
     if (log_token_is(kind, "CANFD")) {

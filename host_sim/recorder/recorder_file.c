@@ -187,19 +187,25 @@ static ssize_t read_all(const char *path, const char *name, char **text) {
     return (count < 0) ? -1 : (ssize_t)size;
 }
 
-/** Sequence numbers wrap: they are compared by their distance. */
 static int by_sequence(const void *one, const void *other) {
     const uint32_t a = ((const agv_event_t *)one)->sequence;
     const uint32_t b = ((const agv_event_t *)other)->sequence;
-    if (a == b) {
-        return 0;
-    }
-    return ((a - b) < (UINT32_MAX / 2u)) ? 1 : -1;
+    return (a > b) - (a < b);
 }
 
+static void shift_sequences(recorder_events_t *events, uint32_t by) {
+    for (size_t i = 0u; i < events->count; i++) {
+        events->events[i].sequence += by;
+    }
+}
+
+/** Sequence numbers wrap: they are sorted by their distance from one of them. */
 static void sort(recorder_events_t *events) {
+    const uint32_t shift = (events->count > 0u) ? ((UINT32_MAX / 2u) - events->events[0].sequence) : 0u;
     size_t kept = 0u;
+    shift_sequences(events, shift);
     qsort(events->events, events->count, sizeof events->events[0], by_sequence);
+    shift_sequences(events, 0u - shift);
     for (size_t i = 0u; i < events->count; i++) {
         if ((kept == 0u) || (events->events[kept - 1u].sequence != events->events[i].sequence)) {
             events->events[kept] = events->events[i];

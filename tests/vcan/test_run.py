@@ -84,7 +84,8 @@ class Supervises(Case):
         for arguments, expected in (((), 0), (("--fail-on-trip",), 1)):
             status, output, _ = self.run_to_end("run", "--can", "vcan0", *arguments, "--for", "700")
             self.assertEqual(status, expected)
-            self.assertRegex(output, r"\Avcan0: .* s\nNOT SUPERVISED: never left INIT\nframes: ")
+            self.assertRegex(output, r"\Avcan0: .* s\nNOT SUPERVISED: never left INIT; it ended before startup_timeout_ms: --why says "
+                                     r"what was missing\nframes: ")
 
     @on_time
     def test_only_identifiers_of_the_protocol_are_received(self):
@@ -112,7 +113,7 @@ class Ends(Case):
                 self.assertEqual(process.end(number), 0)
                 bus.forget()
                 self.assertEqual(bus.listen(0.3), [])
-                self.assertRegex(process.text(), r"\Avcan0: \d+\.\d{3} s\nNOT SUPERVISED: never left INIT\n"
+                self.assertRegex(process.text(), r"\Avcan0: \d+\.\d{3} s\nNOT SUPERVISED: never left INIT; .*\n"
                                                  r"frames: 0 received, 0 of them rejected, 0 dropped; \d+ sent\nwarnings: \d+\nfinal state: INIT, first reason: "
                                                  r"none\n\Z")
 

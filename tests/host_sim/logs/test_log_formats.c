@@ -205,6 +205,25 @@ void test_vector_asc_in_decimal_with_relative_times(void) {
     expect_end();
 }
 
+void test_a_wild_relative_time_does_not_shift_the_lines_behind_it(void) {
+    open_text("base hex  timestamps relative\n"
+              "   0.1 1  43F             Rx   d 1 11\n"
+              "   99999999.0 1  43F      Rx   d 1 22\n"
+              "   0.1 1  43F             Rx   d 1 33\n");
+    log_file->skip_bad = true;
+    expect(100000, "can0", 0x43F, 0, 1, 0x1100000000000000);
+    TEST_ASSERT_EQUAL_INT(CANDUMP_RECORD, candump_next(log_file, &record));
+    TEST_ASSERT_EQUAL_UINT64(200000, record.stamp_us);
+    TEST_ASSERT_EQUAL_UINT64(1, log_file->skipped);
+    expect_end();
+}
+
+void test_vector_asc_with_a_time_of_day_that_is_none(void) {
+    open_text("date Tue Nov 14 10:13:260 pm 2023\n"
+              "   0.010000 1  43F             Rx   d 1 11\n");
+    expect(10000, "can0", 0x43F, 0, 1, 0x1100000000000000);
+}
+
 void test_vector_asc_without_a_header(void) {
     open_text("   0.010000 1  43F             Rx   d 1 11\n");
     expect(10000, "can0", 0x43F, 0, 1, 0x1100000000000000);
