@@ -253,6 +253,7 @@ status_t vehicle_run_nodes(const vehicle_run_request_t *request) {
     typed_lines_init(&run.typed, (run.screen.child != 0) ? monitor_companion_typed(&run.screen) : STDIN_FILENO);
     if (!linux_loop_open(&run.loop)) {
         (void)report("cannot wait for timers and signals: %s", strerror(errno));
+        monitor_companion_end(&run.screen);
         return STATUS_UNUSABLE;
     }
     linux_clock_start(&run.clock);

@@ -4,6 +4,9 @@
 #include <string.h>
 
 #include "common/report.h"
+#include "text/units.h"
+
+enum { BACK_US = 10 * US_PER_MS };
 
 _Static_assert(OBSERVATION_NAMES_SIZE >=
                    (OBSERVATION_INTERFACES_MAX * (CANDUMP_INTERFACE_MAX + sizeof ",")) + sizeof " and others",
@@ -25,6 +28,24 @@ bool observation_begin(observation_t *observation, const agv_config_t *config) {
     return (observation->evidence != NULL) || report("out of memory");
 }
 
+static void note_backward(observation_t *observation, uint64_t back_us) {
+    observation->backward_stamps++;
+    if (back_us > observation->back_us) {
+        observation->back_us = back_us;
+        observation->back_at_us = observation->last_us - observation->first_us;
+    }
+}
+
+bool observation_goes_back(const observation_t *observation, text_t *text) {
+    text_clear(text);
+    if (observation->back_us < (uint64_t)BACK_US) {
+        return false;
+    }
+    text_add(text, "time goes back by %.3f s at %.3f s: gaps and load are wrong; cut or sort the log there",
+             s_of_us(observation->back_us), s_of_us(observation->back_at_us));
+    return true;
+}
+
 void observation_frame(observation_t *observation, hal_can_side_t side, const hal_can_frame_t *frame,
                        uint64_t stamp_us) {
     if (observation->frames == 0u) {
@@ -32,7 +53,7 @@ void observation_frame(observation_t *observation, hal_can_side_t side, const ha
         observation->last_us = stamp_us;
     }
     if (stamp_us < observation->last_us) {
-        observation->backward_stamps++;
+        note_backward(observation, observation->last_us - stamp_us);
     } else {
         observation->last_us = stamp_us;
     }

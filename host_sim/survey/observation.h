@@ -7,6 +7,7 @@
 
 #include "logs/candump_line.h"
 #include "survey/evidence.h"
+#include "text/text.h"
 #include "traffic/bus_load.h"
 #include "traffic/traffic.h"
 
@@ -31,7 +32,9 @@ typedef struct {
     uint64_t last_us;     /**< stamp of the last frame, never going backwards */
     uint64_t frames;
     uint64_t backward_stamps;
-    uint64_t lost; /**< frames that the interfaces' queues lost */
+    uint64_t back_us;    /**< how far they go back at most */
+    uint64_t back_at_us; /**< the time since the start until then */
+    uint64_t lost;       /**< frames that the interfaces' queues lost */
 } observation_t;
 
 /** Begin. @return false: out of memory; was reported */
@@ -46,6 +49,9 @@ void observation_interface(observation_t *observation, const char *name, size_t 
 
 /** Write the interfaces: "can0, can1 and others". */
 void observation_interfaces(const observation_t *observation, char text[OBSERVATION_NAMES_SIZE]);
+
+/** How far the time stamps go back, in words. @return false: less than 10 ms, so frames that were logged late */
+bool observation_goes_back(const observation_t *observation, text_t *text);
 
 /** No more frames. @param last_us the end of the time */
 void observation_end(observation_t *observation, uint64_t last_us);

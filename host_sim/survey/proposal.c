@@ -264,3 +264,7 @@ void proposal_make(proposal_t *proposal, const traffic_t *traffic, const agv_con
     propose_status_id(proposal, traffic);
     keep_given(proposal);
 }
+
+void proposal_note(proposal_t *proposal, const char *text) {
+    note(proposal, "%s", text);
+}

@@ -44,6 +44,9 @@ typedef struct {
 void proposal_make(proposal_t *proposal, const traffic_t *traffic, const agv_config_t *config, const identify_t *found,
                    const char *id_set_reason);
 
+/** Add a note. */
+void proposal_note(proposal_t *proposal, const char *text);
+
 /** Print it as a configuration file. @param source what it is made from; @return the text, to be freed; NULL: no memory */
 char *proposal_yaml(const proposal_t *proposal, const char *source);
 

@@ -72,9 +72,13 @@ static void propose(survey_result_t *result) {
     const bool is_other = result->config.id_set != result->request->config.id_set;
     const bool is_table = result->config.id_set == (uint16_t)AGV_ID_SET_TABLE;
     char reason[REASON_SIZE];
+    text_t back;
     (void)snprintf(reason, sizeof reason, "%s were received, %s were not, or less often",
                    is_table ? "201h and 203h" : "43Fh and 363h", is_table ? "43Fh and 363h" : "201h and 203h");
     proposal_make(&result->proposal, result->traffic, &result->config, &result->found, is_other ? reason : NULL);
+    if (observation_goes_back(&result->observation, &back)) {
+        proposal_note(&result->proposal, back.bytes);
+    }
 }
 
 /** Before anything is heard: a survey of an hour is not lost because its file cannot be written. */

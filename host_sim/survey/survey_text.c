@@ -14,6 +14,9 @@ static void print_head(const survey_result_t *result) {
     const double seconds = s_of_us(observation_us(observation));
     char interfaces[OBSERVATION_NAMES_SIZE];
     text_t text;
+    if (observation_goes_back(observation, &text)) {
+        (void)printf("NOT RELIABLE: %s\n", text.bytes);
+    }
     observation_interfaces(observation, interfaces);
     (void)printf("%s: %.3f s on %s, %" PRIu64 " frames", text_one_line(&text, result->source.name), seconds, interfaces,
                  observation->frames);

@@ -168,8 +168,8 @@ static bool open_screen(run_t *run) {
 
 static bool run_all(run_t *run) {
     interrupt_hold();
-    if (!open_input(run) || ((run->request->record != NULL) && !begin_record(run, run->request->record)) ||
-        !make_monitor(run)) {
+    if (!open_input(run) || !make_monitor(run) ||
+        ((run->request->record != NULL) && !begin_record(run, run->request->record))) {
         return false;
     }
     config_note_deviations(&run->request->config); /* before the screen, which would be drawn over it */

@@ -473,6 +473,14 @@ class Text(Case):
         self.write("log", "(1.000000) can0 123#11\n")
         self.assertNotIn("\nlog  ", self.run_good("survey", "log").stdout)
 
+    def test_a_log_whose_time_goes_back_says_so_first(self):
+        said = "time goes back by 0.010 s at 0.500 s: gaps and load are wrong; cut or sort the log there"
+        for stamp, expected in (("1.490000", [f"NOT RELIABLE: {said}", f"# - {said}"]), ("1.490001", [])):
+            self.write("log", f"(1.000000) can0 123#11\n(1.500000) can0 123#11\n({stamp}) can0 123#11\n")
+            lines = self.run_good("survey", "log").stdout.splitlines()
+            self.assertEqual([line for line in lines if "goes back" in line], expected)
+            self.assertEqual(lines[0].startswith("NOT RELIABLE"), bool(expected))
+
     def test_messages_that_were_not_heard(self):
         self.write("log", traffic.log(traffic.frames(2000, senders=("vcu",))))
         result = self.run_good("survey", "log")
