@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "text/text.h"
+
 enum { NUMBER_TEXT_SIZE = 128 };
 
 static void put(output_t *output, const char *text) {
@@ -11,37 +13,13 @@ static void put(output_t *output, const char *text) {
 }
 
 /** Length of the UTF-8 sequence at this place; 0: malformed, or a character that XML forbids. */
-static size_t sequence_length(const uint8_t *at) {
-    size_t length = 0u;
-    uint32_t lowest = 0u;
-    uint32_t value = at[0];
-
-    if (at[0] < 0x80u) {
-        return ((at[0] >= 0x20u) || (at[0] == '\t') || (at[0] == '\n')) ? 1u : 0u;
-    }
-    if ((at[0] & 0xE0u) == 0xC0u) {
-        length = 2u;
-        lowest = 0x80u;
-        value &= 0x1Fu;
-    } else if ((at[0] & 0xF0u) == 0xE0u) {
-        length = 3u;
-        lowest = 0x800u;
-        value &= 0x0Fu;
-    } else if ((at[0] & 0xF8u) == 0xF0u) {
-        length = 4u;
-        lowest = 0x10000u;
-        value &= 0x07u;
-    } else {
-        return 0u;
-    }
-    for (size_t i = 1u; i < length; i++) {
-        if ((at[i] & 0xC0u) != 0x80u) { /* the terminating zero, too */
-            return 0u;
-        }
-        value = (value << 6) | (at[i] & 0x3Fu);
-    }
-    const bool forbidden = ((value >= 0xD800u) && (value <= 0xDFFFu)) || (value == 0xFFFEu) || (value == 0xFFFFu);
-    return ((value >= lowest) && (value <= 0x10FFFFu) && !forbidden) ? length : 0u;
+static size_t sequence_length(const char *at) {
+    uint32_t value = 0u;
+    const size_t length = text_character(at, &value);
+    const bool is_control = (value < 0x20u) && (value != (uint32_t)'\t') && (value != (uint32_t)'\n');
+    const bool is_none =
+        ((value >= 0xD800u) && (value <= 0xDFFFu)) || (value == 0xFFFEu) || (value == 0xFFFFu) || (value > 0x10FFFFu);
+    return (is_control || is_none) ? 0u : length;
 }
 
 void junit_text(output_t *output, const char *text) {
@@ -49,13 +27,13 @@ void junit_text(output_t *output, const char *text) {
         char plain;
         const char *escaped;
     } escapes[] = {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&apos;"}, {'\n', "&#10;"}};
-    const uint8_t *at = (const uint8_t *)text;
+    const char *at = text;
 
-    while (*at != 0u) {
+    while (*at != '\0') {
         const size_t length = sequence_length(at);
         const char *escaped = (length == 0u) ? "?" : NULL;
         for (size_t i = 0u; i < sizeof escapes / sizeof escapes[0]; i++) {
-            if (*at == (uint8_t)escapes[i].plain) {
+            if (*at == escapes[i].plain) {
                 escaped = escapes[i].escaped;
             }
         }

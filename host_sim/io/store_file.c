@@ -42,25 +42,14 @@ static ssize_t read_up_to_limit(int fd, const char *path, char *text) {
     return (ssize_t)size;
 }
 
-/** The value of a digit as it is written here, in capital letters. */
-static uint32_t nibble(char digit) {
-    return (islower((unsigned char)digit) != 0) ? HEX_NO_DIGIT : hex_digit(digit);
-}
-
-/** Read hexadecimal bytes. @return how many; 0: none, more than @p most, or no such bytes. */
+/** Read hexadecimal bytes in capital letters, as they are written here. @return how many; 0: none, or damaged */
 static size_t read_hex(const char *text, size_t length, uint8_t *bytes, size_t most) {
-    if (((length % 2u) != 0u) || (length / 2u > most)) {
-        return 0u;
-    }
-    for (size_t i = 0u; i < length / 2u; i++) {
-        const uint32_t high = nibble(text[2u * i]);
-        const uint32_t low = nibble(text[(2u * i) + 1u]);
-        if ((high >= HEX_NO_DIGIT) || (low >= HEX_NO_DIGIT)) {
+    for (size_t i = 0u; i < length; i++) {
+        if (islower((unsigned char)text[i]) != 0) {
             return 0u;
         }
-        bytes[i] = (uint8_t)((high << 4u) | low);
     }
-    return length / 2u;
+    return hex_bytes(text, length, bytes, most);
 }
 
 /** The rest of a line that begins with a word; NULL: it begins with another. */

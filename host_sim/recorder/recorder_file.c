@@ -62,24 +62,6 @@ static bool take_bytes(recorder_events_t *events, const uint8_t *bytes, size_t s
     return true;
 }
 
-/** Read hexadecimal digits as an event. @return false: they are none */
-static bool event_of_hex(const char *digits, size_t length, agv_event_t *event) {
-    uint8_t bytes[sizeof *event];
-    if (length != 2u * sizeof bytes) {
-        return false;
-    }
-    for (size_t i = 0u; i < sizeof bytes; i++) {
-        const uint32_t high = hex_digit(digits[2u * i]);
-        const uint32_t low = hex_digit(digits[(2u * i) + 1u]);
-        if ((high >= (uint32_t)HEX_NO_DIGIT) || (low >= (uint32_t)HEX_NO_DIGIT)) {
-            return false;
-        }
-        bytes[i] = (uint8_t)((high << 4u) | low);
-    }
-    memcpy(event, bytes, sizeof bytes);
-    return true;
-}
-
 static size_t hex_length(const char *text, size_t length) {
     size_t count = 0u;
     while ((count < length) && (hex_digit(text[count]) < (uint32_t)HEX_NO_DIGIT)) {
@@ -119,7 +101,7 @@ static bool take_line(recorder_events_t *events, const char *line, size_t length
     }
     const char *digits = (word != NULL) ? word : line;
     const size_t count = hex_length(digits, length - (size_t)(digits - line));
-    if (event_of_hex(digits, count, &event) && is_event(&event)) {
+    if ((hex_bytes(digits, count, (uint8_t *)&event, sizeof event) == sizeof event) && is_event(&event)) {
         return add(events, &event);
     }
     events->damaged += ((word != NULL) || (count > sizeof event)) ? 1u : 0u;

@@ -38,7 +38,7 @@ static void print_head(const survey_result_t *result) {
         (void)printf("%s      %s\n", (result->source.format[0] != '\0') ? "log" : "bus", text.bytes);
     }
     (void)printf("engaged  %.3f s in %" PRIu64 " engagement%s\n", s_of_us(totals.engaged_us), totals.engagements,
-                 (totals.engagements == 1u) ? "" : "s");
+                 words_plural(totals.engagements));
 }
 
 static void print_load(const survey_result_t *result) {

@@ -7,3 +7,18 @@ const uint8_t HEX_DIGIT_PLUS_1[256] = {
     ['8'] = 9,  ['9'] = 10, ['A'] = 11, ['B'] = 12, ['C'] = 13, ['D'] = 14, ['E'] = 15, ['F'] = 16,
     ['a'] = 11, ['b'] = 12, ['c'] = 13, ['d'] = 14, ['e'] = 15, ['f'] = 16,
 };
+
+size_t hex_bytes(const char *text, size_t length, uint8_t *bytes, size_t most) {
+    if (((length % 2u) != 0u) || (length / 2u > most)) {
+        return 0u;
+    }
+    for (size_t i = 0u; i < length / 2u; i++) {
+        const uint32_t high = hex_digit(text[2u * i]);
+        const uint32_t low = hex_digit(text[(2u * i) + 1u]);
+        if ((high >= (uint32_t)HEX_NO_DIGIT) || (low >= (uint32_t)HEX_NO_DIGIT)) {
+            return 0u;
+        }
+        bytes[i] = (uint8_t)((high << 4u) | low);
+    }
+    return length / 2u;
+}

@@ -5,6 +5,7 @@
 #ifndef HOST_SIM_HEX_H
 #define HOST_SIM_HEX_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 enum { HEX_NO_DIGIT = 16 };
@@ -19,5 +20,8 @@ extern const uint8_t HEX_DIGIT_PLUS_1[256];
 static inline uint32_t hex_digit(char character) {
     return (HEX_DIGIT_PLUS_1[(unsigned char)character] + 255u) & 0xFFu;
 }
+
+/** Read hexadecimal bytes. @return how many; 0: none, more than @p most, half a byte, or another character */
+size_t hex_bytes(const char *text, size_t length, uint8_t *bytes, size_t most);
 
 #endif

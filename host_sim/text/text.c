@@ -30,8 +30,7 @@ void text_add_count(text_t *text, const char *what, uint64_t count) {
     }
 }
 
-/** Read a character in UTF-8. @return its length; 0: there is none */
-static size_t read_character(const char *text, uint32_t *character) {
+size_t text_character(const char *text, uint32_t *character) {
     static const struct {
         uint32_t mask; /**< of the first byte */
         uint32_t value;
@@ -65,7 +64,7 @@ static size_t shown_length(const char *text) {
         {0xFEFFu, 0xFEFFu}, {0xFFFEu, 0xFFFFu}, {0x110000u, UINT32_MAX},
     };
     uint32_t character = 0u;
-    const size_t length = read_character(text, &character);
+    const size_t length = text_character(text, &character);
     for (size_t i = 0u; i < sizeof hidden / sizeof hidden[0]; i++) {
         if ((character >= hidden[i].first) && (character <= hidden[i].last)) {
             return 0u;

@@ -21,6 +21,9 @@ typedef struct {
 /** Add a piece. */
 void text_add(text_t *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/** Read a character in UTF-8. @return its length; 0: malformed */
+size_t text_character(const char *text, uint32_t *character);
+
 /** Add "what: count", behind a comma where it is not the first; nothing for 0. */
 void text_add_count(text_t *text, const char *what, uint64_t count);
 

@@ -22,6 +22,7 @@
 #include "scenario/run/scenario_run.h"
 #include "text/suggest.h"
 #include "text/units.h"
+#include "text/words.h"
 #include "ui/timeline.h"
 
 #define MAIN_JOB "demo"
@@ -135,7 +136,7 @@ static status_t print_result(const work_t *work, bool good) {
 
     if (good) {
         const size_t count = check->expectation_count;
-        (void)fprintf(work->text_out, "%sAll %zu expectation%s passed.\n", space, count, (count == 1u) ? "" : "s");
+        (void)fprintf(work->text_out, "%sAll %zu expectation%s passed.\n", space, count, words_plural(count));
         return STATUS_OK;
     }
     (void)fprintf(work->text_out, "%sExpectations FAILED, %s:\n", space, work->path);

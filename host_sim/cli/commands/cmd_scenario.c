@@ -27,6 +27,7 @@
 #include "scenario/run/scenario_run.h"
 #include "text/text.h"
 #include "text/units.h"
+#include "text/words.h"
 
 enum { FILES_MAX = 1000, FIXED_FILES = 5 };
 
@@ -187,7 +188,7 @@ static const char *find_unusable(work_t *work, char **files) {
 
 static void print_result(const work_t *work, const char *file, const result_t *result) {
     const size_t count = work->run.check.expectation_count;
-    const char *plural = (count == 1u) ? "" : "s";
+    const char *plural = words_plural(count);
     text_t copy;
     const char *name = text_one_line(&copy, file);
     if (result->failure_count == 0u) {
@@ -334,7 +335,7 @@ static void print_totals(const work_t *work, char **files, const totals_t *total
         }
     }
     (void)fprintf(work->text_out, "%zu scenario%s: %zu passed, %zu failed", work->given.file_count,
-                  (work->given.file_count == 1u) ? "" : "s", totals->passed, totals->failed);
+                  words_plural(work->given.file_count), totals->passed, totals->failed);
     if (scenario_bus_options_is_real(&work->given.bus)) {
         (void)fprintf(work->text_out, ", %zu left out", totals->left_out);
     }
