@@ -6,7 +6,7 @@
 #define HOST_SIM_OBSERVATION_H
 
 #include "logs/candump_line.h"
-#include "survey/evidence.h"
+#include "survey/identify/evidence.h"
 #include "text/text.h"
 #include "traffic/bus_load.h"
 #include "traffic/traffic.h"

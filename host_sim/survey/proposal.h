@@ -14,7 +14,7 @@
 #include <stddef.h>
 
 #include "agv/config.h"
-#include "survey/identify.h"
+#include "survey/identify/identify.h"
 #include "traffic/traffic.h"
 
 #define PROPOSAL_REASON_SIZE 480u

@@ -6,7 +6,7 @@
 #define HOST_SIM_SURVEY_RESULT_H
 
 #include "io/output.h"
-#include "survey/identify.h"
+#include "survey/identify/identify.h"
 #include "survey/observation.h"
 #include "survey/proposal.h"
 #include "survey/sources.h"

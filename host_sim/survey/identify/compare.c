@@ -1,4 +1,4 @@
-#include "survey/compare.h"
+#include "survey/identify/compare.h"
 
 #include <stdlib.h>
 

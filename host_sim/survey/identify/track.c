@@ -1,4 +1,4 @@
-#include "survey/track.h"
+#include "survey/identify/track.h"
 
 #include <stdlib.h>
 

@@ -1,4 +1,4 @@
-#include "survey/identify.h"
+#include "survey/identify/identify.h"
 
 #include <stdio.h>
 #include <string.h>

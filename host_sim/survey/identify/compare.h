@@ -7,7 +7,7 @@
 #ifndef HOST_SIM_COMPARE_H
 #define HOST_SIM_COMPARE_H
 
-#include "survey/evidence.h"
+#include "survey/identify/evidence.h"
 
 /** What is compared, and how. */
 typedef struct {

@@ -9,7 +9,7 @@
 #ifndef HOST_SIM_CRITERIA_H
 #define HOST_SIM_CRITERIA_H
 
-#include "survey/evidence.h"
+#include "survey/identify/evidence.h"
 #include "traffic/traffic.h"
 
 #define CRITERIA_MAX 8u

@@ -1,4 +1,4 @@
-#include "survey/fits.h"
+#include "survey/identify/fits.h"
 
 #include <stddef.h>
 #include <stdlib.h>

@@ -5,7 +5,7 @@
 #ifndef HOST_SIM_SUSPECT_H
 #define HOST_SIM_SUSPECT_H
 
-#include "survey/criteria.h"
+#include "survey/identify/criteria.h"
 
 /** An identifier, and the message that it may carry. */
 typedef struct {

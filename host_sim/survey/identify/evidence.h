@@ -11,7 +11,7 @@
 
 #include "agv/config.h"
 #include "hal/can.h"
-#include "survey/track.h"
+#include "survey/identify/track.h"
 #include "traffic/counter_use.h"
 
 /** A gap from which on an identifier is silent. */

@@ -1,9 +1,9 @@
-#include "survey/evidence.h"
+#include "survey/identify/evidence.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "survey/fits.h"
+#include "survey/identify/fits.h"
 
 enum { IDS = 2048, FIRST_COUNTER_AT = 0, LAST_COUNTER_AT = 7, HALF = 2 };
 

@@ -1,4 +1,4 @@
-#include "survey/criteria.h"
+#include "survey/identify/criteria.h"
 
 #include <inttypes.h>
 #include <stdarg.h>
@@ -6,8 +6,8 @@
 
 #include "agv/codec.h"
 #include "common/message_facts.h"
-#include "survey/compare.h"
-#include "survey/suspect.h"
+#include "survey/identify/compare.h"
+#include "survey/identify/suspect.h"
 #include "text/units.h"
 
 enum { MEDIAN = 500, PERCENT = 100, CYCLE_LOWEST_PCT = 80, CYCLE_HIGHEST_PCT = 125 };

@@ -13,7 +13,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "survey/criteria.h"
+#include "survey/identify/criteria.h"
 
 #define IDENTIFY_CANDIDATES_MAX 8u
 

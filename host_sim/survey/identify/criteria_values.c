@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "agv/codec.h"
-#include "survey/compare.h"
-#include "survey/suspect.h"
+#include "survey/identify/compare.h"
+#include "survey/identify/suspect.h"
 #include "text/units.h"
 
 enum { GEARS_SIZE = 24, MOVES_MM_S = 100, STANDS_MM_S = 50, APART_MM_S = 500, MIDDLE_PARTS = 10, SPAN_MIN = 1000 };
