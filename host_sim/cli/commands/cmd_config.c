@@ -9,6 +9,27 @@
 #include "config/config_text.h"
 #include "io/yaml_schema.h"
 
+static status_t print(const config_options_t *given, bool is_schema, bool to_kconfig) {
+    if (is_schema && to_kconfig) {
+        (void)report("give only one of --schema and --to-kconfig");
+        return STATUS_UNUSABLE;
+    }
+    if (is_schema) {
+        return yaml_schema_print(config_schema(false), "Configuration of the AGV safety supervisor") ? STATUS_OK
+                                                                                                     : STATUS_UNUSABLE;
+    }
+    agv_config_t config;
+    if (!config_options_make(given, &config)) {
+        return STATUS_UNUSABLE;
+    }
+    if (to_kconfig) {
+        config_print_kconfig(&config);
+    } else {
+        config_print_yaml(&config);
+    }
+    return STATUS_OK;
+}
+
 status_t cmd_config(int argc, char **argv) {
     config_options_t given;
     option_t config_rows[CONFIG_OPTIONS];
@@ -45,22 +66,5 @@ status_t cmd_config(int argc, char **argv) {
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
-    if (is_schema && to_kconfig) {
-        (void)report("give only one of --schema and --to-kconfig");
-        return STATUS_UNUSABLE;
-    }
-    if (is_schema) {
-        return yaml_schema_print(config_schema(false), "Configuration of the AGV safety supervisor") ? STATUS_OK
-                                                                                                     : STATUS_UNUSABLE;
-    }
-    agv_config_t config;
-    if (!config_options_make(&given, &config)) {
-        return STATUS_UNUSABLE;
-    }
-    if (to_kconfig) {
-        config_print_kconfig(&config);
-    } else {
-        config_print_yaml(&config);
-    }
-    return STATUS_OK;
+    return print(&given, is_schema, to_kconfig);
 }
