@@ -188,6 +188,16 @@ void test_a_press_in_the_very_frame_of_the_trip_does_not_count(void) {
     expect_no_reset_before_a_new_press();
 }
 
+/* Shows: FSM-3, FSM-4 */
+void test_a_press_from_before_a_second_trip_does_not_reset_it(void) {
+    walk_to_safe(&f);
+    walk_reset(&f, 1000);
+    walk_button(&f, true);
+    fixture_run(&f, 50);
+    walk_trip(&f);
+    expect_no_reset_before_a_new_press();
+}
+
 /* ---- The VCU is lost ---- */
 
 /* Shows: FSM-3, VCU_HEARTBEAT_LOST */

@@ -129,6 +129,21 @@ void test_while_error_passive_a_sender_that_pauses_is_overridden_behind_its_fram
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x43F)); /* its first frame may be the head of a burst */
 }
 
+/* The count of single frames decays: every 4 ms the third one has enough. */
+/* Shows: TOP-1, ERROR_PASSIVE */
+void test_while_error_passive_a_sender_that_pauses_is_known_by_its_third_frame(void) {
+    f.config.override_gap_ms = 1;
+    tripped();
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_PASSIVE);
+    settle();
+    for (unsigned i = 0; i < 3u; i++) {
+        foreign_gear(1);
+        TEST_ASSERT_EQUAL_UINT32((i < 2u) ? i : 3u, fixture_count_sent(&f, 0x168));
+        fixture_run(&f, 4);
+    }
+    TEST_ASSERT_EQUAL_UINT32(3, fixture_count_sent(&f, 0x168));
+}
+
 /* Shows: TOP-1, ERROR_PASSIVE */
 void test_while_error_passive_the_last_frame_of_such_a_sender_is_overridden_too(void) {
     passive_with_a_sender_that_pauses();
