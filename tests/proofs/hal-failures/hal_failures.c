@@ -23,7 +23,7 @@ enum {
     FOLLOW_LONG_MS = 700,
     RUN_OF_CALLS = 25,
     COMMON_EVERY = 16,
-    HANG_S = 100
+    HANG_S = 20
 };
 
 static const char *const NAMES[SIM_HAL_OP_COUNT] = {
