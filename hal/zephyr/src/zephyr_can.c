@@ -318,9 +318,12 @@ void hal_can_purge(hal_t *hal, hal_can_side_t side) {
     }
 }
 
+/* The driver of bxCAN would send what its mailboxes hold after the recovery. A stop takes it back. */
+enum { STOP_FOR_RECOVERY = DT_HAS_COMPAT_STATUS_OKAY(st_stm32_bxcan) };
+
 /* After a failure the supervisor requests it again. */
 static void recover(zephyr_hal_side_t *side) {
-    if (side->is_halted) {
+    if (side->is_halted || ((int)STOP_FOR_RECOVERY != 0)) {
         (void)can_stop(side->device);
         start_again(side);
     } else {

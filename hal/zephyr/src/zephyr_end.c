@@ -83,7 +83,7 @@ static const uint32_t *interrupted_frame(void) {
 
 static void on_nmi(void) {
     const uint32_t *const frame = interrupted_frame();
-    if (!zephyr_chip_expects_nmi(zephyr_log_is_read, zephyr_ram_is_new)) {
+    if (!zephyr_chip_expects_nmi(zephyr_log_is_read || zephyr_flash_is_tested, zephyr_ram_is_new)) {
         zephyr_hal_die(zephyr_chip_reason_of_nmi(), (frame != NULL) ? frame[FRAME_PC] : 0u,
                        (frame != NULL) ? frame[FRAME_LR] : 0u);
     }

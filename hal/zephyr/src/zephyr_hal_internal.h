@@ -73,6 +73,9 @@ void zephyr_reset_note(const zephyr_hal_end_t *end);
 /** Whether the log in flash is being read: then an ECC error of the flash is a torn record. */
 extern volatile bool zephyr_log_is_read;
 
+/** Whether the program in flash is being tested: then an ECC error of the flash makes its checksum wrong. */
+extern volatile bool zephyr_flash_is_tested;
+
 /** Whether memory that outlives a reset is being tested: after a power-on it has never been written. */
 extern volatile bool zephyr_ram_is_new;
 

@@ -18,8 +18,8 @@ hal_end_t zephyr_chip_reason_of_nmi(void) {
     return HAL_END_NMI;
 }
 
-bool zephyr_chip_expects_nmi(bool is_log_read, bool is_ram_new) {
-    (void)is_log_read;
+bool zephyr_chip_expects_nmi(bool is_flash_read, bool is_ram_new) {
+    (void)is_flash_read;
     (void)is_ram_new;
     return false;
 }

@@ -9,9 +9,17 @@ static const struct gpio_dt_spec stop = GPIO_DT_SPEC_GET_OR(ZEPHYR_HAL_NODE, est
 static const struct gpio_dt_spec button = GPIO_DT_SPEC_GET_OR(ZEPHYR_HAL_NODE, reset_gpios, {0});
 static const struct gpio_dt_spec led = GPIO_DT_SPEC_GET(DT_PHANDLE(ZEPHYR_HAL_NODE, alarm_led), gpios);
 
-/* Runs as soon as the pins work: before any other driver, and long before main(). */
+static bool output_is_set_up;
+
+/* Runs as soon as the pins work: before any other driver, and long before main(). Some drivers refuse an output that is read. */
 static int open_output_at_boot(void) {
-    return gpio_is_ready_dt(&output) ? gpio_pin_configure_dt(&output, GPIO_OUTPUT_INACTIVE | GPIO_INPUT) : -ENODEV;
+    int status = -ENODEV;
+    if (gpio_is_ready_dt(&output)) {
+        status = gpio_pin_configure_dt(&output, GPIO_OUTPUT_INACTIVE | GPIO_INPUT);
+        status = (status == -ENOTSUP) ? gpio_pin_configure_dt(&output, GPIO_OUTPUT_INACTIVE) : status;
+    }
+    output_is_set_up = status == 0;
+    return status;
 }
 
 BUILD_ASSERT(CONFIG_GPIO_INIT_PRIORITY < CONFIG_AGV_OUTPUT_INIT_PRIORITY,
@@ -19,7 +27,7 @@ BUILD_ASSERT(CONFIG_GPIO_INIT_PRIORITY < CONFIG_AGV_OUTPUT_INIT_PRIORITY,
 SYS_INIT(open_output_at_boot, POST_KERNEL, CONFIG_AGV_OUTPUT_INIT_PRIORITY);
 
 bool zephyr_hal_output_is_open(void) {
-    return gpio_is_ready_dt(&output) && (gpio_pin_get_dt(&output) == 0);
+    return output_is_set_up && (gpio_pin_get_dt(&output) == 0);
 }
 
 /* Not by gpio_pin_set_dt(): an assertion that fails in it would call this function again. */
@@ -58,12 +66,16 @@ bool zephyr_inputs_start(void) {
     return start_input(&button) && feedback_works && stop_works;
 }
 
-/* A pin that cannot be read is open. */
+/* A pin that cannot be read is a broken input. */
 static uint8_t contact(const struct gpio_dt_spec *input) {
     if (input->port == NULL) {
         return (uint8_t)HAL_CONTACT_NONE;
     }
-    return (uint8_t)((gpio_pin_get_dt(input) == 1) ? HAL_CONTACT_CLOSED : HAL_CONTACT_OPEN);
+    const int level = gpio_pin_get_dt(input);
+    if (level < 0) {
+        return UINT8_MAX;
+    }
+    return (uint8_t)((level == 1) ? HAL_CONTACT_CLOSED : HAL_CONTACT_OPEN);
 }
 
 void hal_inputs_read(hal_t *hal, hal_inputs_t *inputs) {

@@ -5,6 +5,8 @@
 
 #include "zephyr_hal_internal.h"
 
+volatile bool zephyr_flash_is_tested;
+
 #if defined(CONFIG_AGV_FLASH_TEST)
 
 BUILD_ASSERT((CONFIG_FLASH_BASE_ADDRESS != 0) || !(IS_ENABLED(CONFIG_NULL_POINTER_EXCEPTION_DETECTION_DWT) ||
@@ -44,7 +46,9 @@ static bool test_slice(zephyr_flash_test_t *test, uint32_t bytes) {
     const uint32_t left = image->ranges[test->range].size - test->done;
     const uint32_t size = MIN(bytes, left);
     const uintptr_t start = (uintptr_t)image->ranges[test->range].start + test->done;
+    zephyr_flash_is_tested = true;
     test->crc = crc32_ieee_update(test->crc, (const uint8_t *)start, size);
+    zephyr_flash_is_tested = false;
     test->done += size;
     if (size < left) {
         return true;

@@ -129,8 +129,8 @@ hal_end_t zephyr_chip_reason_of_nmi(void) {
     return parity_has_failed(true) ? HAL_END_RAM_PARITY : HAL_END_NMI;
 }
 
-bool zephyr_chip_expects_nmi(bool is_log_read, bool is_ram_new) {
-    const bool record = is_log_read && flash_has_failed(true);
+bool zephyr_chip_expects_nmi(bool is_flash_read, bool is_ram_new) {
+    const bool record = is_flash_read && flash_has_failed(true);
     const bool ram = is_ram_new && parity_has_failed(true);
     return record || ram;
 }

@@ -39,11 +39,11 @@ bool zephyr_chip_ram_has_failed(void);
 hal_end_t zephyr_chip_reason_of_nmi(void);
 
 /**
- * Clear an NMI's error that is expected: an ECC error of the flash while @p is_log_read, because a power cut can tear a
- * record; a parity error while @p is_ram_new, because after a power-on the RAM that outlives a reset is random.
+ * Clear an NMI's error that is expected: an ECC error of the flash while @p is_flash_read, because a power cut can tear a
+ * record, and the self-test reports a program that is damaged; a parity error while @p is_ram_new, because after a power-on the RAM that outlives a reset is random.
  * @return false: there is none
  */
-bool zephyr_chip_expects_nmi(bool is_log_read, bool is_ram_new);
+bool zephyr_chip_expects_nmi(bool is_flash_read, bool is_ram_new);
 
 /**
  * Set the lower limit of a window watchdog that has been set up to expire after @p expires_ms, where its driver sets none.
