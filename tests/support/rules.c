@@ -14,7 +14,7 @@ enum { HEARTBEAT_MS = 50, STEP_MS = 101, STATUS_MS = 60, GEAR_STATUS_MS = 125, C
 /* LATELY_MS: tolerance for the conditions of a reset, which ticks check. */
 enum { PRESS_MS = 1000, PRESS_MAX_MS = 5000, LATELY_MS = PRESS_MS - STEP_MS };
 enum { IDLE_COUNTS = 2, SLOW_COUNTS = 180, THROTTLE_COUNTS = 250, ENGAGED_ALONE = 0x80, MODE_BITS = 0xC0 };
-enum { P = 8, CYCLE_MS = 100, OVERRIDE_GAP_MS = 5 };
+enum { P = 8, CYCLE_MS = 100, PASSIVE_CYCLE_MS = 103, OVERRIDE_GAP_MS = 5 };
 
 __attribute__((format(printf, 2, 3))) static void broken(rules_t *rules, const char *format, ...) {
     va_list arguments;
@@ -242,6 +242,7 @@ void rules_heard(rules_t *rules, hal_can_side_t side, const hal_can_frame_t *fra
 void rules_ticks(rules_t *rules, uint64_t now_ms, rules_bus_t bus) {
     rules->now_ms = now_ms;
     rules->bus = bus;
+    rules->passive_ms = bus.is_passive ? now_ms : rules->passive_ms;
     rules->sent_now = 0;
     rules->alarm = false;
     rules->released = false;
@@ -488,10 +489,12 @@ static void check_sending(rules_t *rules, const rules_seen_t *seen, uint64_t tic
         memset(rules->answer_owed, 0, sizeof rules->answer_owed);
         return;
     }
+    const bool was_passive = age_ms(rules, rules->passive_ms) <= (uint64_t)PASSIVE_CYCLE_MS;
+    const uint64_t cycle_ms = was_passive ? PASSIVE_CYCLE_MS : CYCLE_MS;
     for (int i = 0; i <= THROTTLE; i++) {
         const bool sends_it = (i != GEAR) || rules->park_at_once;
         const uint64_t since_ms = (rules->sent_ms[i] > rules->commanding_ms) ? rules->sent_ms[i] : rules->commanding_ms;
-        if (sends_it && (age_ms(rules, since_ms) > CYCLE_MS + tick_gap_ms)) {
+        if (sends_it && (age_ms(rules, since_ms) > cycle_ms + tick_gap_ms)) {
             broken(rules, "TIM-1: safe command %d has not been sent for %u ms", i, (unsigned)age_ms(rules, since_ms));
         }
         if (rules->answer_owed[i] && (age_ms(rules, rules->answer_owed_ms[i]) > OVERRIDE_GAP_MS + tick_gap_ms)) {

@@ -103,6 +103,7 @@ typedef struct {
     uint64_t sent_ms[RULES_COMMANDS];
     bool answer_owed[RULES_COMMANDS];
     uint64_t answer_owed_ms[RULES_COMMANDS];
+    uint64_t passive_ms; /**< the controller was error-passive */
     bool own_counter_known;
     uint8_t own_counter;
 

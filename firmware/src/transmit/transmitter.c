@@ -20,12 +20,13 @@ enum { STATUS_ON_WIRE_MS = 2 };
 enum { TICK_USUAL_MS = 2 };
 
 /*
- * A foreign command that comes alone counts ALONE_FRAME, one that follows in the same or next ms ends the count, as does the
- * time. From ALONE_ENOUGH on, the sender repeats its command with pauses in which an override finds room.
+ * A foreign command that comes alone adds ALONE_FRAME, one that follows in the same or next ms resets the count, and each ms
+ * without one subtracts 1. From ALONE_ENOUGH on, the sender repeats its command with pauses in which an override finds room.
+ * ALONE_MAX: 5 ms after its last command the count is below that.
  */
 #define ALONE_FRAME 4u
 #define ALONE_ENOUGH 8u
-#define ALONE_MAX 16u
+#define ALONE_MAX 9u
 #define LAST_TICK_SHIFT 4u
 
 void agv_transmitter_start(agv_transmitter_t *transmitter, uint32_t now_ms) {
@@ -193,15 +194,8 @@ static bool came_lately(const agv_transmitter_t *transmitter, uint32_t command) 
 }
 
 static void note_foreign(agv_transmitter_t *transmitter, uint32_t command) {
-    const bool alone = !came_lately(transmitter, command);
-    const uint8_t count = transmitter->alone[command];
-    if (!alone) {
-        transmitter->alone[command] = 0u;
-    } else if (count < ALONE_MAX) {
-        transmitter->alone[command] = (uint8_t)(count + ALONE_FRAME);
-    } else {
-        /* enough */
-    }
+    const uint32_t count = came_lately(transmitter, command) ? 0u : (transmitter->alone[command] + ALONE_FRAME);
+    transmitter->alone[command] = (uint8_t)((count < ALONE_MAX) ? count : ALONE_MAX);
     transmitter->foreign_lately |= (uint8_t)agv_message_bit(command);
 }
 

@@ -147,7 +147,7 @@ void test_while_error_passive_a_sender_that_pauses_is_known_by_its_third_frame(v
 /* Shows: TOP-1, ERROR_PASSIVE */
 void test_while_error_passive_the_last_frame_of_such_a_sender_is_overridden_too(void) {
     passive_with_a_sender_that_pauses();
-    fixture_run(&f, 9); /* the last frame came 11 ms ago */
+    fixture_run(&f, 2); /* the last frame came 4 ms ago */
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
     fixture_run(&f, 1);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
@@ -155,7 +155,7 @@ void test_while_error_passive_the_last_frame_of_such_a_sender_is_overridden_too(
 
 static void expect_override_behind_a_burst(uint32_t gap_ms) {
     passive_with_a_sender_that_pauses();
-    fixture_run(&f, 3);
+    fixture_run(&f, 1);
     foreign_gear(1);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
     fixture_run(&f, gap_ms);
