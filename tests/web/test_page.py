@@ -32,7 +32,7 @@ MESSAGE = "document.getElementById('message').hidden ? '' : document.getElementB
 
 class Handler(http.server.SimpleHTTPRequestHandler):
     extensions_map = {**http.server.SimpleHTTPRequestHandler.extensions_map, ".js": "text/javascript", ".wasm": "application/wasm"}
-    has_wasm = True
+    missing = None  # a file that the server does not have
 
     def log_message(self, *_):
         pass
@@ -42,7 +42,7 @@ class Handler(http.server.SimpleHTTPRequestHandler):
         super().end_headers()
 
     def do_GET(self):
-        if self.path.startswith("/agv.wasm") and not Handler.has_wasm:
+        if self.path == Handler.missing:
             self.send_error(404)
         else:
             super().do_GET()
@@ -85,6 +85,11 @@ class Page(unittest.TestCase):
         """The page, standing at a time of the run."""
         self.show(link)
         self.run_script(f"agv.play(false); agv.run.seek({ms}); agv.draw(true)")
+
+    def lose(self, path):
+        """From now on the server does not have a file."""
+        Handler.missing = path
+        self.addCleanup(setattr, Handler, "missing", None)
 
     def clean(self):
         self.assertEqual(self.browser.complaints(), [])
@@ -263,6 +268,21 @@ class Page(unittest.TestCase):
         text = base64.b64encode(content).decode()
         self.run_script(f"agv.open(new File([Uint8Array.from(atob('{text}'), (one) => one.charCodeAt(0))], '{name}'))")
 
+    def test_a_report_that_cannot_be_made_is_one_sentence(self):
+        self.paused(2000)
+        self.lose("/simulation/worker.js")
+        self.run_script("agv.showReport()")
+        self.assertEqual(self.run_script(MESSAGE), "The report cannot be made, because simulation/worker.js is missing or has failed.")
+        Handler.missing = None
+        self.run_script("agv.showReport()")
+        self.assertEqual(self.run_script(MESSAGE), "")
+        self.assertTrue(self.run_script("document.getElementById('report-dialog').open"))
+        self.wait("document.getElementById('report-frame').contentDocument?.getElementById('headline')")
+        self.lose("/report/report.css")
+        self.run_script("document.getElementById('report-save').click()")
+        self.wait(MESSAGE)
+        self.assertEqual(self.run_script(MESSAGE), "The report cannot be saved, because report/report.css is missing.")
+
     def test_a_log_becomes_a_report(self):
         for name in ("ai-stops.log", "other-vehicle.log.gz"):
             with self.subTest(name):
@@ -307,8 +327,7 @@ class Page(unittest.TestCase):
             self.assertRegex(self.run_script(MESSAGE), sentence)
 
     def test_a_module_that_cannot_be_loaded_is_one_sentence(self):
-        Handler.has_wasm = False
-        self.addCleanup(setattr, Handler, "has_wasm", True)
+        self.lose("/agv.wasm")
         self.show(ready=False)
         self.wait(MESSAGE)
         self.assertEqual(self.run_script(MESSAGE), "The simulation cannot be loaded, because this browser refuses WebAssembly or agv.wasm is missing "

@@ -44,6 +44,7 @@ class Page {
     say(byId("version"), `Version ${this.lists.version}.`);
     byId("link").addEventListener("click", () => this.copyLink());
     byId("report").addEventListener("click", () => this.showReport());
+    byId("report-save").addEventListener("click", () => this.guard(() => this.reports.save()));
     byId("file").addEventListener("change", ({ target }) => this.open(target.files[0]).then(() => (target.value = "")));
     byId("scenario").addEventListener("change", ({ target }) => this.guard(() => this.load(target.value)));
     addEventListener("hashchange", () => this.openLink());

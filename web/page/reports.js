@@ -5,7 +5,11 @@ import { byId } from "./dom.js";
 const MODULES = "report/report.js";
 const STYLES = ["report/timeline/timeline.css", "report/report.css"];
 
-const fetchText = async (path) => (await fetch(path)).text();
+async function fetchText(path) {
+  const response = await fetch(path);
+  if (!response.ok) throw new Error(`The report cannot be saved, because ${path} is missing.`);
+  return response.text();
+}
 
 /** A module with those that it imports before it, as one script: as host_sim puts them into a report. */
 async function scriptOf(path, seen = new Set()) {
@@ -28,20 +32,31 @@ export class Reports {
   constructor() {
     this.waiting = new Map();
     this.count = 0;
-    byId("report-save").addEventListener("click", () => this.save());
+  }
+
+  begin() {
+    this.worker = new Worker("simulation/worker.js", { type: "module" });
+    this.worker.addEventListener("message", ({ data }) => {
+      const { resolve, reject } = this.waiting.get(data.id);
+      this.waiting.delete(data.id);
+      if (data.error) reject(new Error(data.error));
+      else resolve(data);
+    });
+    for (const name of ["error", "messageerror"]) this.worker.addEventListener(name, () => this.giveUp());
+  }
+
+  /** The worker is no good: nobody waits for it, and the next report gets another one. */
+  giveUp() {
+    this.worker.terminate();
+    this.worker = null;
+    const error = new Error("The report cannot be made, because simulation/worker.js is missing or has failed.");
+    this.waiting.forEach(({ reject }) => reject(error));
+    this.waiting.clear();
   }
 
   /** @return the answer of the worker: html is the report without its styles and scripts @throws Error with a sentence */
   async make(request, transfer = []) {
-    if (!this.worker) {
-      this.worker = new Worker("simulation/worker.js", { type: "module" });
-      this.worker.addEventListener("message", ({ data }) => {
-        const { resolve, reject } = this.waiting.get(data.id);
-        this.waiting.delete(data.id);
-        if (data.error) reject(new Error(data.error));
-        else resolve(data);
-      });
-    }
+    if (!this.worker) this.begin();
     const id = ++this.count;
     return new Promise((resolve, reject) => {
       this.waiting.set(id, { resolve, reject });
