@@ -168,6 +168,15 @@ class Page(unittest.TestCase):
         self.wait("agv.run.trips === 1")
         self.assertIn(self.run_script(STATE), ("TRIPPED", "SAFE"))
 
+    def test_names_of_buttons_hold_their_texts(self):
+        self.paused(0)
+        self.assertEqual(self.run_script("""[...document.querySelectorAll('button[aria-label]')].filter((one) => /\\w/.test(one.textContent))
+            .filter((one) => !one.ariaLabel.toLowerCase().includes(one.textContent.toLowerCase())).map((one) => one.ariaLabel)"""), [])
+
+    def test_the_time_is_not_read_aloud_in_every_frame(self):
+        self.paused(0)
+        self.assertEqual(self.run_script("document.querySelectorAll('#transport :is(output, [aria-live], [role=status], [aria-pressed])').length"), 0)
+
     def test_no_width_needs_scrolling(self):
         for width, dark in SIZES:
             with self.subTest(width=width, dark=dark):

@@ -19,11 +19,12 @@ export function draw(tag, attributes = {}, ...children) {
   return element;
 }
 
+/** @param label says more: it is the name if it holds the text, because people say to a computer what they see; else a hint */
 export function button(text, action, label) {
   const element = make("button", text);
   element.type = "button";
   if (label) {
-    element.setAttribute("aria-label", label);
+    if (label.toLowerCase().includes(text.toLowerCase())) element.setAttribute("aria-label", label);
     element.title = label;
   }
   element.addEventListener("click", action);

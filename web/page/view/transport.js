@@ -1,13 +1,14 @@
 // transport.js: the time: paused, single steps, and speeds from a hundredth to as fast as it goes.
 
-import { button, byId, clock, make, mark, say } from "../dom.js";
+import { button, byId, clock, make, say } from "../dom.js";
 
 export const SPEEDS = [["1/100", 0.01], ["1/10", 0.1], ["1\u00d7", 1], ["10\u00d7", 10], ["100\u00d7", 100], ["fastest", Infinity]];
 
 /** @param control { playing, speed, play(on), begin(), step(ms), toEvent(), setSpeed(n) } */
 export function makeTransport(control) {
   const play = button("", () => control.play(!control.playing));
-  const time = make("output.time");
+  const time = make("span.time"); // no <output>: it would be read aloud in every frame
+  time.setAttribute("role", "timer");
   time.setAttribute("aria-label", "Time of the run");
   const speed = make("select");
   speed.setAttribute("aria-label", "Speed");
@@ -20,7 +21,6 @@ export function makeTransport(control) {
 
   return (run) => {
     say(play, control.playing ? "\u275a\u275a Pause" : "\u25b6 Play");
-    mark(play, "aria-pressed", control.playing);
     play.disabled = run.hasEnded;
     speed.value = String(control.speed);
     const of = run.view.duration_ms < 3600000 ? ` of ${Math.round(run.view.duration_ms / 1000)} s` : "";
