@@ -168,6 +168,20 @@ class Page(unittest.TestCase):
         self.wait("agv.run.trips === 1")
         self.assertIn(self.run_script(STATE), ("TRIPPED", "SAFE"))
 
+    def test_keys_of_the_time_work_from_where_the_focus_is_after_a_click(self):
+        for place in ("#report", "#faults summary", "#file", ".tl-tools [title=Later]", ".tl-picture"):
+            with self.subTest(place):
+                self.paused(3000)
+                self.run_script(f"document.querySelector('{place}').focus()")
+                self.browser.press(".", "Period")
+                self.browser.press(".", "Period")
+                self.browser.press(",", "Comma")
+                self.assertEqual(self.run_script("agv.run.now"), 3001)
+                self.assertTrue(self.run_script(f"document.activeElement === document.querySelector('{place}')"))
+        self.run_script("document.getElementById('setting-steering_command_timeout_ms').focus()")
+        self.browser.press(".", "Period")
+        self.assertEqual(self.run_script("agv.run.now"), 3001)
+
     def test_names_of_buttons_hold_their_texts(self):
         self.paused(0)
         self.assertEqual(self.run_script("""[...document.querySelectorAll('button[aria-label]')].filter((one) => /\\w/.test(one.textContent))

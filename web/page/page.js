@@ -57,8 +57,8 @@ class Page {
   }
 
   key(event) {
-    const isTyping = event.target.closest("input, select, button, summary, .tl-picture, dialog");
-    if (isTyping || event.ctrlKey || event.metaKey || event.altKey) return;
+    const itsOwn = event.key === " " ? "button, summary, input, select, dialog" : "input:not([type=file]), select, dialog";
+    if (event.target.closest(itsOwn) || event.ctrlKey || event.metaKey || event.altKey) return;
     const keys = { " ": () => this.play(!this.playing), ".": () => this.step(1), ",": () => this.step(-1), n: () => this.toEvent() };
     if (!keys[event.key]) return;
     event.preventDefault();

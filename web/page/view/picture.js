@@ -35,6 +35,14 @@ function marksOf(events) {
     .map((event) => ({ t: event.t_ms, text: event.reason ?? "trip", tone: "bad" }));
 }
 
+/** With other data it has other buttons: the one that has the focus keeps it. */
+function update(element, data) {
+  const buttons = () => [...element.querySelectorAll("button")];
+  const at = buttons().indexOf(document.activeElement);
+  element.update(data);
+  buttons()[at]?.focus({ preventScroll: true });
+}
+
 export function makePicture() {
   let element = null;
   return (run, isPlaying) => {
@@ -44,7 +52,7 @@ export function makePicture() {
       from: 0, to, view: [Math.max(run.now - WINDOW, 0), Math.max(run.now, WINDOW)], cursor: run.now, rows: rowsOf(run), marks: marksOf(run.events),
       label: "The run over time. Left and right move the cursor, plus and minus zoom.",
     };
-    if (element) element.update(data);
+    if (element) update(element, data);
     else {
       element = timeline(data);
       byId("picture").append(element);
