@@ -349,6 +349,12 @@ class Page(unittest.TestCase):
             self.open_log(name, content)
             self.assertRegex(self.run_script(MESSAGE), sentence)
 
+    def test_a_refused_press_of_reset_is_said(self):
+        self.paused(3000)
+        self.run_script("agv.run.inject = (actor, word) => { if (word === 'press') throw new Error('The press is refused.'); }")
+        self.click("Reset: the operator holds remote button 1 for 1.5 s")
+        self.assertEqual(self.run_script(MESSAGE), "The press is refused.")
+
     def test_a_module_that_cannot_be_loaded_is_one_sentence(self):
         self.lose("/agv.wasm")
         self.show(ready=False)

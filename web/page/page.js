@@ -40,7 +40,7 @@ class Page {
     this.drawVerdict = makeVerdict(this.lists);
     this.drawTransport = makeTransport(this);
     this.showSettings = makeSettings(this.lists, (name, value) => this.set(name, value));
-    makeFaults(this.lists, (...step) => this.act(...step), () => this.endFaults());
+    makeFaults(this.lists, this);
     say(byId("version"), `Version ${this.lists.version}.`);
     byId("link").addEventListener("click", () => this.copyLink());
     byId("report").addEventListener("click", () => this.showReport());
@@ -135,9 +135,14 @@ class Page {
     });
   }
 
-  act(actor, word, parameters, after = 0) {
+  act(actor, word, parameters) {
+    this.actAll([[actor, word, parameters]]);
+  }
+
+  /** @param steps each as run.inject() takes it */
+  actAll(steps) {
     this.guard(() => {
-      this.run.inject(actor, word, parameters, after);
+      steps.forEach((step) => this.run.inject(...step));
       this.run.step(1); // what trips at once is in the next picture
       if (!this.playing) this.play(true);
     });

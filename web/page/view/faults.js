@@ -93,15 +93,15 @@ function makeAll(lists, act) {
   });
 }
 
-/** @param act (actor, word, parameters, after) => void @param end ends all faults */
-export function makeFaults(lists, act, end) {
+/** @param control { act(actor, word, parameters), actAll(steps), endFaults() } */
+export function makeFaults(lists, control) {
+  const act = (...step) => control.act(...step);
   const common = COMMON.map(([name, rows]) => make("div.group", make("h3", name), make("div.buttons",
     ...rows.map(([title, actor, word, parameters]) => button(title, () => act(actor, word, parameters ?? {}), `${name}: ${title}`)))));
   const reset = button("Reset", () => {
-    act("operator", "press", { button: "1" });
-    act("operator", "release", { button: "1" }, 1500);
+    control.actAll([["operator", "press", { button: "1" }], ["operator", "release", { button: "1" }, 1500]]);
   }, "Reset: the operator holds remote button 1 for 1.5 s");
   byId("faults").append(
-    make("div.buttons.operator", button("End all faults", end), reset, button("Engage autopilot", () => act("operator", "engage", {}))),
+    make("div.buttons.operator", button("End all faults", () => control.endFaults()), reset, button("Engage autopilot", () => act("operator", "engage", {}))),
     ...common, ...makeAll(lists, act));
 }
