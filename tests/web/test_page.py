@@ -254,6 +254,18 @@ class Page(unittest.TestCase):
         self.assertFalse(self.run_script("agv.playing"))
         self.clean()
 
+    def test_a_link_that_the_module_refuses_gives_the_free_drive(self):
+        for part, sentence in (("settings: { steering_command_timeout_ms: '7' }, steps: []", r"^steering_command_timeout_ms: 7 is not within"),
+                               ("settings: {}, steps: [{ at: 3000, actor: 'eps', word: 'dance', parameters: {} }]", r"dance")):
+            with self.subTest(part):
+                self.show()
+                link = self.run_script(f"import('./simulation/link.js').then((module) => '#' + module.toLink({{ scenario: 'overview/demo.yaml', t: 5, {part} }}))")
+                self.show(link)
+                self.assertRegex(self.run_script(MESSAGE), sentence)
+                self.assertEqual(self.run_script("[agv.playing, agv.run.plan.name, document.getElementById('scenario').value]"), [True, "drive.yaml", "drive.yaml"])
+                self.wait("agv.run.now > 100")
+                self.clean()
+
     def test_expectations_are_ticked(self):
         self.show()
         self.run_script("agv.load('overview/demo.yaml')")
@@ -348,6 +360,14 @@ class Page(unittest.TestCase):
                                         ("a.log", b"", r"^a\.log: "), ("a.yaml", b"name: [", r"^a\.yaml:\d+: not YAML: ")):
             self.open_log(name, content)
             self.assertRegex(self.run_script(MESSAGE), sentence)
+
+    def test_a_refused_file_leaves_the_run_where_it_stands(self):
+        self.paused(3000)
+        self.run_script("agv.run.inject('ai', 'mute', { message: 'steering_command' }); agv.run.step(500)")
+        events = self.run_script("JSON.stringify(agv.run.events)")
+        self.open_log("a.yaml", b"name: [")
+        self.assertRegex(self.run_script(MESSAGE), r"^a\.yaml:")
+        self.assertEqual(self.run_script("[agv.run.now, agv.run.plan.name, JSON.stringify(agv.run.events)]"), [3500, "drive.yaml", events])
 
     def test_a_refused_press_of_reset_is_said(self):
         self.paused(3000)

@@ -101,17 +101,22 @@ class Page {
   }
 
   beginPlan(plan) {
-    const before = this.run.plan;
+    const before = this.run.view ? { plan: this.run.plan, now: this.run.now } : null;
     const title = /^name: *(.*)/m.exec(plan.text)?.[1] ?? plan.name;
     try {
       this.run.begin({ ...plan, title });
     } catch (error) {
-      if (before) this.run.begin(before);
+      if (before) this.goBack(before);
       throw error;
     } finally {
       this.showSettings(this.run.plan.settings);
       this.draw(true);
     }
+  }
+
+  goBack({ plan, now }) {
+    this.run.begin(plan);
+    this.run.seek(now);
   }
 
   begin() {
@@ -126,12 +131,9 @@ class Page {
       const { plan, now } = this.run;
       const settings = name === null ? {} : { ...plan.settings, [name]: value };
       if (value === null) delete settings[name];
-      try {
-        this.beginPlan({ ...plan, settings });
-      } finally {
-        this.run.seek(now);
-        this.draw(true);
-      }
+      this.beginPlan({ ...plan, settings });
+      this.run.seek(now);
+      this.draw(true);
     });
   }
 
@@ -246,7 +248,7 @@ class Page {
         link = fromLink(hash);
         await this.load(link.scenario, link);
       } catch (error) {
-        if (!this.run.plan) await this.load(DRIVE);
+        if (!this.run.view) await this.load(DRIVE);
         throw error;
       }
       return undefined;
