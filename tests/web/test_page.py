@@ -266,6 +266,36 @@ class Page(unittest.TestCase):
                 self.wait("agv.run.now > 100")
                 self.clean()
 
+    def test_the_list_names_the_scenario_that_runs(self):
+        choose = "((file) => { const list = document.getElementById('scenario'); list.value = file; list.dispatchEvent(new Event('change')); })"
+        chosen = "document.getElementById('scenario').value"
+        self.show()
+        self.open_log("own.yaml", (SCENARIOS / "overview/demo.yaml").read_bytes())
+        self.assertEqual(self.run_script(f"[agv.run.plan.name, {chosen}]"), ["own.yaml", ""])
+        self.run_script(f"{choose}('drive.yaml')")
+        self.wait("agv.run.plan.name === 'drive.yaml'")
+        self.lose("/scenarios/overview/demo.yaml")
+        self.run_script(f"{choose}('overview/demo.yaml')")
+        self.wait(MESSAGE)
+        self.assertEqual(self.run_script(chosen), "drive.yaml")
+
+    def test_of_two_choices_the_last_one_counts(self):
+        self.show()
+        names = self.run_script("""(async () => {
+            const { fetch } = globalThis;
+            let answer;
+            globalThis.fetch = async (path) => {
+                if (path.includes("demo")) await new Promise((done) => (answer = done));
+                return fetch(path);
+            };
+            const first = agv.load("overview/demo.yaml");
+            await agv.load("drive.yaml");
+            answer();
+            await first;
+            return [agv.run.plan.name, document.getElementById("scenario").value];
+        })()""")
+        self.assertEqual(names, ["drive.yaml", "drive.yaml"])
+
     def test_expectations_are_ticked(self):
         self.show()
         self.run_script("agv.load('overview/demo.yaml')")

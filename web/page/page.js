@@ -30,6 +30,7 @@ class Page {
     this.speed = 1;
     this.debt = 0;
     this.reports = new Reports();
+    this.choices = { run: 0, report: 0 };
     this.explained = { key: "", data: null };
   }
 
@@ -85,21 +86,37 @@ class Page {
       await action();
     } catch (error) {
       this.complain(error);
+      this.showChoice(); // what was chosen does not run
     }
+  }
+
+  /** Of several choices the last one counts, not the one that is there last. @return a function: is this the last one? */
+  choose(what) {
+    const number = ++this.choices[what];
+    return () => number === this.choices[what];
   }
 
   // --- runs
 
   /** @param file of the list of scenarios */
   async load(file, { settings = {}, steps = [], t = 0 } = {}) {
+    const isLast = this.choose("run");
     const response = await fetch(file === DRIVE ? file : `scenarios/${file}`);
+    const text = await response.text();
+    if (!isLast()) return;
     if (!response.ok) throw new Error(`There is no scenario ${file}.`);
-    this.beginPlan({ name: file, text: await response.text(), settings, steps });
-    byId("scenario").value = file;
+    this.beginPlan({ name: file, text, settings, steps });
     this.run.seek(t);
     this.play(t === 0);
   }
 
+  /** The list of scenarios names the one that runs; it has no name for one of your own. */
+  showChoice() {
+    const { plan } = this.run;
+    byId("scenario").value = plan && !plan.isOwn ? plan.name : "";
+  }
+
+  /** @throws Error with a sentence; the run before stands where it was then */
   beginPlan(plan) {
     const before = this.run.view ? { plan: this.run.plan, now: this.run.now } : null;
     const title = /^name: *(.*)/m.exec(plan.text)?.[1] ?? plan.name;
@@ -109,6 +126,7 @@ class Page {
       if (before) this.goBack(before);
       throw error;
     } finally {
+      this.showChoice();
       this.showSettings(this.run.plan.settings);
       this.draw(true);
     }
@@ -269,9 +287,11 @@ class Page {
 
   showReport() {
     return this.guard(async () => {
+      const isLast = this.choose("report");
+      const { plan, now } = this.run;
       this.play(false);
-      const { html } = await this.reports.make({ kind: "run", plan: this.run.plan, until: this.run.now });
-      this.reports.show(html, this.run.plan.title);
+      const { html } = await this.reports.make({ kind: "run", plan, until: now });
+      if (isLast()) this.reports.show(html, plan.title);
     });
   }
 
@@ -279,17 +299,22 @@ class Page {
   open(file, aiInterface = "") {
     return this.guard(async () => {
       if (!file) return;
-      if (/\.ya?ml$/.test(file.name)) {
-        this.beginPlan({ name: file.name, text: await file.text(), settings: {}, steps: [], isOwn: true });
-        this.play(true);
-        return;
-      }
+      if (/\.ya?ml$/.test(file.name)) return this.openScenario(file);
+      const isLast = this.choose("report");
       const bytes = new Uint8Array(await file.arrayBuffer());
       const request = { kind: "log", name: file.name, bytes, settings: this.run.plan?.settings ?? {}, aiInterface };
       this.play(false);
       const { html, interfaces } = await this.reports.make(request, [bytes.buffer]);
-      this.reports.show(html, file.name, { interfaces, aiInterface, choose: (name) => this.open(file, name) });
+      if (isLast()) this.reports.show(html, file.name, { interfaces, aiInterface, choose: (name) => this.open(file, name) });
     });
+  }
+
+  async openScenario(file) {
+    const isLast = this.choose("run");
+    const text = await file.text();
+    if (!isLast()) return;
+    this.beginPlan({ name: file.name, text, settings: {}, steps: [], isOwn: true });
+    this.play(true);
   }
 }
 
