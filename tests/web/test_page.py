@@ -296,6 +296,28 @@ class Page(unittest.TestCase):
         })()""")
         self.assertEqual(names, ["drive.yaml", "drive.yaml"])
 
+    def test_words_are_about_the_run_that_is_shown(self):
+        self.paused(3000)
+        self.run_script("""{
+            const make = agv.reports.make.bind(agv.reports);
+            agv.reports.make = async (...all) => {
+                const answer = await make(...all);
+                if (!agv.answer) await new Promise((done) => (agv.answer = done));
+                return answer;
+            };
+            agv.run.inject("ai", "mute", { message: "steering_command" });
+            agv.run.step(1000);
+            agv.draw(true);
+        }""")
+        self.wait("agv.answer")
+        default = self.run_script("agv.lists.settings.find((one) => one.name === 'steering_command_timeout_ms').preset")
+        self.assertNotEqual(default, 83)
+        self.run_script("agv.set('steering_command_timeout_ms', 83); agv.answer()")
+        details = "document.getElementById('details').textContent"
+        self.wait("document.querySelectorAll('#details p').length === 3")
+        self.assertIn("83 ms", self.run_script(details))
+        self.clean()
+
     def test_expectations_are_ticked(self):
         self.show()
         self.run_script("agv.load('overview/demo.yaml')")

@@ -31,7 +31,8 @@ class Page {
     this.debt = 0;
     this.reports = new Reports();
     this.choices = { run: 0, report: 0 };
-    this.explained = { key: "", data: null };
+    this.plans = 0;
+    this.explained = { key: "", trip: "", data: null };
   }
 
   build() {
@@ -122,6 +123,7 @@ class Page {
     const title = /^name: *(.*)/m.exec(plan.text)?.[1] ?? plan.name;
     try {
       this.run.begin({ ...plan, title });
+      this.plans++;
     } catch (error) {
       if (before) this.goBack(before);
       throw error;
@@ -227,7 +229,7 @@ class Page {
     if (!this.run.view) return;
     const now = performance.now();
     this.fast.forEach((draw) => draw(this.run));
-    this.drawVerdict(this.run, this.explained.data);
+    this.drawWords();
     this.drawTransport(this.run);
     if (all || now - (this.drawn ?? 0) >= SLOWLY_MS) {
       this.drawn = now;
@@ -237,22 +239,33 @@ class Page {
     }
   }
 
+  /** A name of the trip that is the last one now. */
+  get trip() {
+    return `${this.plans},${this.run.trips}`;
+  }
+
+  /** The sentences, with the words about a trip if they are about this one. */
+  drawWords() {
+    this.drawVerdict(this.run, this.explained.trip === this.trip ? this.explained.data : null);
+  }
+
   /** Ask for the words about a trip, when there is something new to say. */
   async explain() {
-    const { run } = this;
+    const { run, trip } = this;
     if (run.view.reason < 0 || this.explaining || (this.playing && run.now > LONG_RUN_MS)) return;
     const isStanding = run.view.speed_mm_s === 0;
-    const key = [run.plan.name, run.plan.steps.length, JSON.stringify(run.plan.settings), run.trips, run.view.state, isStanding].join();
+    const key = [trip, run.plan.steps.length, run.view.state, isStanding].join();
     if (key === this.explained.key) return;
     this.explaining = true;
     try {
       const { html } = await this.reports.make({ kind: "run", plan: run.plan, until: run.now });
-      this.explained = { key, data: dataOf(html) };
+      this.explained = { key, trip, data: dataOf(html) };
     } catch {
-      this.explained = { key, data: null }; // the plain sentence stays
+      this.explained = { key, trip, data: null }; // the plain sentence stays
     }
     this.explaining = false;
-    this.drawVerdict(run, this.explained.data);
+    this.drawWords();
+    this.explain(); // about what happened in the meantime
   }
 
   // --- links, reports, files
