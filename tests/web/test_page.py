@@ -266,6 +266,15 @@ class Page(unittest.TestCase):
                 self.wait("agv.run.now > 100")
                 self.clean()
 
+    def test_a_link_is_copied_only_if_there_is_a_clipboard(self):
+        for clipboard, text in (("{ writeText: async () => {} }", "Link copied"), ("{ writeText: async () => { throw new Error(); } }", "The link is in the address bar"),
+                                ("undefined", "The link is in the address bar")):
+            with self.subTest(clipboard):
+                self.paused(2000)
+                self.run_script(f"Object.defineProperty(navigator, 'clipboard', {{ value: {clipboard} }})")
+                self.assertEqual(self.run_script("agv.copyLink().then(() => document.getElementById('link').textContent)"), text)
+                self.assertTrue(self.run_script("location.hash.includes('t=2000')"))
+
     def test_the_list_names_the_scenario_that_runs(self):
         choose = "((file) => { const list = document.getElementById('scenario'); list.value = file; list.dispatchEvent(new Event('change')); })"
         chosen = "document.getElementById('scenario').value"

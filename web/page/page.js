@@ -292,9 +292,9 @@ class Page {
       if (plan.isOwn) throw new Error("A scenario of your own is not in a link: hand its file on as well.");
       const hash = toLink({ scenario: plan.name, settings: plan.settings, steps: plan.steps, t: now });
       history.replaceState(null, "", `#${hash}`);
-      await navigator.clipboard?.writeText(location.href).catch(() => {});
-      say(byId("link"), "Link copied");
-      setTimeout(() => say(byId("link"), "Copy link"), 2000);
+      const isCopied = await copy(location.href);
+      say(byId("link"), isCopied ? "Link copied" : "The link is in the address bar");
+      setTimeout(() => say(byId("link"), "Copy link"), isCopied ? 2000 : 4000);
     });
   }
 
@@ -328,6 +328,16 @@ class Page {
     if (!isLast()) return;
     this.beginPlan({ name: file.name, text, settings: {}, steps: [], isOwn: true });
     this.play(true);
+  }
+}
+
+/** @return whether it is in the clipboard: a page that came by http has none, and the user can refuse it */
+async function copy(text) {
+  try {
+    await navigator.clipboard.writeText(text);
+    return true;
+  } catch {
+    return false;
   }
 }
 
