@@ -436,6 +436,15 @@ class Page(unittest.TestCase):
         self.click("Reset: the operator holds remote button 1 for 1.5 s")
         self.assertEqual(self.run_script(MESSAGE), "The press is refused.")
 
+    def test_an_exception_pauses_the_run_and_is_said(self):
+        self.show()
+        self.run_script("agv.run.step = () => { throw new Error('step is broken'); }")
+        self.wait(MESSAGE)
+        self.assertEqual(self.run_script(MESSAGE), "The run was paused, because the page made a mistake (step is broken).")
+        self.assertEqual(self.run_script("[agv.playing, document.querySelector('#transport button:nth-child(3)').textContent]"), [False, "\u25b6 Play"])
+        self.run_script("delete agv.run.step; agv.before = agv.run.now; agv.play(true)")
+        self.wait("agv.run.now > agv.before + 100")
+
     def test_a_module_that_cannot_be_loaded_is_one_sentence(self):
         self.lose("/agv.wasm")
         self.show(ready=False)

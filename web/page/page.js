@@ -217,9 +217,21 @@ class Page {
   }
 
   frame(now) {
-    if (this.playing) this.advance(now);
-    if (this.playing) this.draw(false);
-    requestAnimationFrame((next) => this.frame(next));
+    requestAnimationFrame((next) => this.frame(next)); // first: whatever happens, there is a next frame
+    try {
+      if (this.playing) this.advance(now);
+      if (this.playing) this.draw(false);
+    } catch (error) {
+      this.stop(error);
+    }
+  }
+
+  /** Something is wrong that nobody expected. */
+  stop(error) {
+    this.playing = false;
+    console.error(error);
+    this.complain(new Error(`The run was paused, because the page made a mistake (${error.message}).`));
+    this.drawTransport(this.run);
   }
 
   // --- drawing
