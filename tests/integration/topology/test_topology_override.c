@@ -153,6 +153,22 @@ void test_while_error_passive_the_last_frame_of_such_a_sender_is_overridden_too(
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
 }
 
+/* Shows: TOP-1, ERROR_PASSIVE */
+void test_while_error_passive_a_burst_resets_the_count_of_single_frames(void) {
+    f.config.override_gap_ms = 1;
+    tripped();
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_PASSIVE);
+    settle();
+    foreign_gear(1);
+    foreign_gear(1);
+    fixture_run(&f, 2);
+    foreign_gear(1);
+    fixture_run(&f, 3);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
+    foreign_gear(1); /* the second single frame, 3 ms after the first */
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
+}
+
 static void expect_override_behind_a_burst(uint32_t gap_ms) {
     passive_with_a_sender_that_pauses();
     fixture_run(&f, 1);
