@@ -6,7 +6,7 @@ static const uint8_t first_ms[AGV_COMMAND_COUNT] = {[AGV_MSG_TURN_SIGNAL_COMMAND
                                                     [AGV_MSG_THROTTLE_COMMAND] = 33u,
                                                     [AGV_MSG_STEERING_COMMAND] = 25u};
 
-/* Longer than a frame at 125 kbit/s with its errors. */
+/* Longer than a frame at 125 kbit/s and its error frames. */
 #define SHIFT_MS 3u
 
 void agv_scheduler_restart(agv_scheduler_t *scheduler, uint32_t now_ms) {

@@ -41,7 +41,7 @@ void agv_scheduler_restart_slot(agv_scheduler_t *scheduler, uint32_t now_ms, uin
  */
 uint32_t agv_scheduler_due(agv_scheduler_t *scheduler, uint32_t now_ms, uint32_t command);
 
-/** Shift the grid of a command by 3 ms: a sender of the same identifier in step with it collides with each of its frames. */
+/** Delay all further slots of a command by 3 ms, so that it does not collide with another sender of its identifier each time. */
 void agv_scheduler_shift(agv_scheduler_t *scheduler, uint32_t command);
 
 /**

@@ -22,7 +22,7 @@ enum { TICK_USUAL_MS = 2 };
 /*
  * A foreign command that comes alone adds ALONE_FRAME, one that follows in the same or next ms resets the count, and each ms
  * without one subtracts 1. From ALONE_ENOUGH on, the sender repeats its command with pauses in which an override finds room.
- * ALONE_MAX: 5 ms after its last command the count is below that.
+ * From ALONE_MAX the count falls below ALONE_ENOUGH within 5 ms after the last command.
  */
 #define ALONE_FRAME 4u
 #define ALONE_ENOUGH 8u

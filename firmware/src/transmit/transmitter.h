@@ -54,7 +54,7 @@ typedef struct {
     uint8_t kept_data[AGV_MSG_COUNT][AGV_DLC];
     uint8_t wanted_before;  /**< own commands that were sent periodically at the last tick */
     uint8_t foreign_lately; /**< commands of other senders that differ, since the last tick; upper half: before it */
-    uint8_t alone[AGV_COMMAND_COUNT]; /**< whether they lately came alone, or in bursts */
+    uint8_t alone[AGV_COMMAND_COUNT]; /**< high: they lately came alone, not in bursts */
     uint8_t passed_lately;            /**< commands that were forwarded less than half their cycle ago */
     bool status_again;                /**< the last status frame may have been discarded with the waiting frames */
     bool throttle_0_waits;            /**< the 075h at the end of an engagement waits for the HAL */
