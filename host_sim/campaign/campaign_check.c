@@ -44,7 +44,7 @@ void campaign_check_init(campaign_check_t *check, const campaign_plan_t *plan, c
     check->reason = -1;
 }
 
-static void is_broken(campaign_check_t *check, campaign_break_t broken, uint64_t t_us) {
+static void note_break(campaign_check_t *check, campaign_break_t broken, uint64_t t_us) {
     if (check->broken == CAMPAIGN_SOUND) {
         check->broken = broken;
         check->broken_us = t_us;
@@ -100,7 +100,7 @@ static void check_before(campaign_check_t *check, uint64_t t_us, agv_message_t m
     if (check->closed_us == CAMPAIGN_NEVER) {
         if (!may_be_sent(check, message, frame, true)) {
             check->broken_frame = *frame;
-            is_broken(check, CAMPAIGN_UNSAFE_FRAME, t_us);
+            note_break(check, CAMPAIGN_UNSAFE_FRAME, t_us);
         }
         return;
     }
@@ -108,14 +108,14 @@ static void check_before(campaign_check_t *check, uint64_t t_us, agv_message_t m
     const bool passed =
         check->plan->gateway && ((message == AGV_MSG_THROTTLE_COMMAND) || !campaign_is_safe_command(message, frame));
     if (!passed && (t_us > check->closed_us + IN_FLIGHT_US)) {
-        is_broken(check, CAMPAIGN_FALSE_TRIP, t_us);
+        note_break(check, CAMPAIGN_FALSE_TRIP, t_us);
     }
 }
 
 /** The safe commands go on. Where they cannot (bus-off after collisions with the other sender), the output is open. */
 static void check_beat(campaign_check_t *check, uint64_t t_us) {
     if ((t_us - check->last_beat_us > BEAT_GAP_US) && look(check).output_closed) {
-        is_broken(check, CAMPAIGN_NOT_LATCHED, t_us);
+        note_break(check, CAMPAIGN_NOT_LATCHED, t_us);
     }
 }
 
@@ -141,7 +141,7 @@ static void check_after(campaign_check_t *check, uint64_t t_us, agv_message_t me
     }
     if (!may_be_sent(check, message, frame, false)) {
         check->broken_frame = *frame;
-        is_broken(check, CAMPAIGN_UNSAFE_FRAME, t_us);
+        note_break(check, CAMPAIGN_UNSAFE_FRAME, t_us);
     }
     if (message == AGV_MSG_TURN_SIGNAL_COMMAND) {
         check_beat(check, t_us);
@@ -200,7 +200,7 @@ static void on_state(campaign_check_t *check, uint64_t t_ms, const agv_event_t *
     const scenario_testbed_view_t view = look(check);
     const bool parked = (view.vehicle.gear == (uint8_t)AGV_GEAR_P) && !view.vehicle.autopilot;
     if (!parked && !campaign_has_flag(check, CAMPAIGN_LIES)) {
-        is_broken(check, CAMPAIGN_FALSE_CONFIRM, now_us(check));
+        note_break(check, CAMPAIGN_FALSE_CONFIRM, now_us(check));
     }
 }
 
@@ -228,7 +228,7 @@ static void check_readiness(campaign_check_t *check) {
     check->engaged = look(check).vehicle.autopilot;
     const bool as_planned = (check->engaged == plan->engaged) || (plan->engagement != NULL);
     if ((plan->cause_ms != 0u) && (!check->was_closed || !as_planned)) {
-        is_broken(check, CAMPAIGN_NOT_READY, check->cause_us);
+        note_break(check, CAMPAIGN_NOT_READY, check->cause_us);
     }
 }
 
@@ -244,13 +244,13 @@ void campaign_check_tick(campaign_check_t *check, uint64_t t_ms) {
 
     if (closed && !check->was_closed) {
         if (check->opened_us != CAMPAIGN_NEVER) {
-            is_broken(check, CAMPAIGN_NOT_LATCHED, t_ms * US_PER_MS);
+            note_break(check, CAMPAIGN_NOT_LATCHED, t_ms * US_PER_MS);
         }
         check->closed_us = (check->closed_us == CAMPAIGN_NEVER) ? changed_us(check, t_ms) : check->closed_us;
     }
     if (!closed && check->was_closed) {
         if (t_ms < step_ms) {
-            is_broken(check, CAMPAIGN_FALSE_TRIP, t_ms * US_PER_MS);
+            note_break(check, CAMPAIGN_FALSE_TRIP, t_ms * US_PER_MS);
         }
         check->opened_us = (check->opened_us == CAMPAIGN_NEVER) ? changed_us(check, t_ms) : check->opened_us;
     }
@@ -266,7 +266,7 @@ void campaign_check_tick(campaign_check_t *check, uint64_t t_ms) {
 static void check_bound(campaign_check_t *check) {
     const uint64_t reaction_us = campaign_has_flag(check, CAMPAIGN_BY_OUTPUT) ? check->opened_us : check->first_safe_us;
     if ((reaction_us == CAMPAIGN_NEVER) || (reaction_us > check->cause_us + check->plan->bound_us)) {
-        is_broken(check, CAMPAIGN_LATE, check->cause_us + check->plan->bound_us);
+        note_break(check, CAMPAIGN_LATE, check->cause_us + check->plan->bound_us);
     }
 }
 
@@ -295,12 +295,12 @@ void campaign_check_finish(campaign_check_t *check) {
 
     check_bound(check);
     if (is_wrong_reason(check)) {
-        is_broken(check, CAMPAIGN_WRONG_REASON, end_us);
+        note_break(check, CAMPAIGN_WRONG_REASON, end_us);
     }
     if (check->first_safe_us != CAMPAIGN_NEVER) {
         check_beat(check, end_us);
     }
     if ((check->confirmed_us == CAMPAIGN_NEVER) && check->was_closed) {
-        is_broken(check, CAMPAIGN_NEVER_SETTLED, end_us);
+        note_break(check, CAMPAIGN_NEVER_SETTLED, end_us);
     }
 }

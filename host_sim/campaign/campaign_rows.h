@@ -16,7 +16,6 @@
 #include "agv/config.h"
 #include "agv/faults.h"
 #include "agv/protocol.h"
-#include "io/output.h"
 
 /** As fast as the vehicle is driven. 30 %: 1.2 m/s, from which a VCU with a guard has P within confirm_timeout_ms. */
 #define CAMPAIGN_THROTTLE_MAX_PCT 30u
@@ -52,6 +51,7 @@ typedef enum {
 #define CAMPAIGN_LATE_AI (1u << 12)   /**< the AI computer starts after INIT: no collisions with it there */
 #define CAMPAIGN_AGAIN (1u << 13)     /**< engaged more than once before the cause */
 #define CAMPAIGN_IN_GEAR (1u << 14) /**< with an engagement: not on the gateway, which waits with D and the throttle */
+#define CAMPAIGN_FLAGS_END (1u << 15)
 
 typedef struct {
     agv_fault_t fault;
@@ -99,8 +99,5 @@ uint32_t campaign_engaged_decision_ms(const campaign_row_t *row, const campaign_
 
 /** What the wire may take of it, in us: some frames on the way to the supervisor, and from it. */
 uint32_t campaign_wire_us(uint32_t bitrate);
-
-/** Print the tables that a reaction time follows from, as JSON: rows, messages, settings, frame lengths. */
-bool campaign_print_tables(output_t *output);
 
 #endif

@@ -242,4 +242,5 @@ const hunt_attack_t HUNT_ATTACKS[] = {
     {.name = "take_over", .begin = "operator: disengage"},
 };
 
+_Static_assert(sizeof HUNT_ATTACKS / sizeof HUNT_ATTACKS[0] <= HUNT_ATTACKS_MAX, "an attack has no bit");
 const size_t HUNT_ATTACK_COUNT = sizeof HUNT_ATTACKS / sizeof HUNT_ATTACKS[0];

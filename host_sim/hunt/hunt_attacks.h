@@ -47,7 +47,10 @@ typedef struct {
     hunt_parameter_t parameters[HUNT_PARAMETERS];
 } hunt_attack_t;
 
+/** One bit each in two words of hunt_signature_t. */
+#define HUNT_ATTACKS_MAX 128u
+
 extern const hunt_attack_t HUNT_ATTACKS[];
-extern const size_t HUNT_ATTACK_COUNT;
+extern const size_t HUNT_ATTACK_COUNT; /**< at most HUNT_ATTACKS_MAX */
 
 #endif

@@ -9,6 +9,7 @@
 
 enum { PATH_SIZE = 4096, BITS = 64, AFTER_MS = 500 };
 _Static_assert((unsigned)AGV_SETTING_COUNT <= 64u * (unsigned)HUNT_SETTING_WORDS, "a setting has no bit");
+_Static_assert(HUNT_ATTACKS_MAX <= 64u * (unsigned)HUNT_ATTACK_WORDS, "an attack has no bit");
 _Static_assert((unsigned)AGV_FAULT_COUNT <= 64u * (unsigned)HUNT_CLASS_WORDS, "a fault has no bit");
 
 static hunt_signature_t signature_of(const hunt_program_t *program, const hazard_t *hazard) {
@@ -21,10 +22,11 @@ static hunt_signature_t signature_of(const hunt_program_t *program, const hazard
     for (uint32_t i = 0u; i < program->action_count; i++) {
         const hunt_action_t *action = &program->actions[i];
         const uint64_t bit = UINT64_C(1) << (action->attack % BITS);
+        const uint32_t word = action->attack / BITS;
         const bool is_pattern =
             ((HUNT_ATTACKS[action->attack].flags & HUNT_PATTERN) != 0u) && (action->parameters[HUNT_PATTERN_BAD] != 0u);
-        signature.attacks |= bit;
-        signature.patterns |= is_pattern ? bit : 0u;
+        signature.attacks[word] |= bit;
+        signature.patterns[word] |= is_pattern ? bit : 0u;
     }
     for (uint32_t i = 0u; i < program->setting_count; i++) {
         const uint16_t setting = program->settings[i].setting;
@@ -48,8 +50,9 @@ static bool are_part_of(const uint64_t *known, const uint64_t *bits, unsigned wo
 /** All of @p known is in @p signature too. */
 static bool is_part_of(const hunt_signature_t *known, const hunt_signature_t *signature) {
     return (known->kind == signature->kind) && (known->gateway == signature->gateway) &&
-           (strcmp(known->cause, signature->cause) == 0) && are_part_of(&known->attacks, &signature->attacks, 1u) &&
-           are_part_of(&known->patterns, &signature->patterns, 1u) &&
+           (strcmp(known->cause, signature->cause) == 0) &&
+           are_part_of(known->attacks, signature->attacks, HUNT_ATTACK_WORDS) &&
+           are_part_of(known->patterns, signature->patterns, HUNT_ATTACK_WORDS) &&
            are_part_of(known->classes, signature->classes, HUNT_CLASS_WORDS) &&
            are_part_of(known->settings, signature->settings, HUNT_SETTING_WORDS);
 }

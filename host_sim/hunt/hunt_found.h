@@ -8,15 +8,21 @@
 #include "hunt/hunt_play.h"
 #include "io/output.h"
 
-enum { HUNT_FOUND_MAX = 1000, HUNT_CAUSE_SIZE = 64, HUNT_SETTING_WORDS = 4, HUNT_CLASS_WORDS = 2 };
+enum {
+    HUNT_FOUND_MAX = 1000,
+    HUNT_CAUSE_SIZE = 64,
+    HUNT_ATTACK_WORDS = 2,
+    HUNT_SETTING_WORDS = 4,
+    HUNT_CLASS_WORDS = 2
+};
 
 /** What distinguishes one hazard from another. */
 typedef struct {
     uint32_t kind;
     uint32_t gateway;
     char cause[HUNT_CAUSE_SIZE];
-    uint64_t attacks;  /**< one bit a row of HUNT_ATTACKS */
-    uint64_t patterns; /**< of those with bad frames and good ones in turn */
+    uint64_t attacks[HUNT_ATTACK_WORDS];  /**< one bit a row of HUNT_ATTACKS */
+    uint64_t patterns[HUNT_ATTACK_WORDS]; /**< of those with bad frames and good ones in turn */
     uint64_t settings[HUNT_SETTING_WORDS];
     uint64_t classes[HUNT_CLASS_WORDS];
     uint64_t run;  /**< the first that found it */

@@ -168,7 +168,7 @@ static bool read_line(line_t *line, const char *separators, const agv_config_t *
     return true;
 }
 
-/** @param format of the source, with the text */
+/** Take a line. @param before, after around the text where a message names its source */
 static bool take_text(line_t *line, const char *text, const char *before, const char *after) {
     (void)snprintf(line->source, sizeof line->source, "%s%.*s%s", before, SHOWN_MAX, text, after);
     return (snprintf(line->text, sizeof line->text, "%s", text) < (int)sizeof line->text) ||

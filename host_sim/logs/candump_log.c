@@ -23,7 +23,6 @@ bool candump_open(candump_log_t *log, const char *path, bool skip_bad) {
     log->line = 0u;
     log->skipped = 0u;
     log->skip_bad = skip_bad;
-    log->interrupted = false;
     log->at_end = false;
     log->is_cut_off = false;
     log->is_checked = false;
@@ -70,12 +69,10 @@ static ssize_t read_file(void *ctx, void *bytes, size_t size) {
     candump_log_t *log = ctx;
     for (;;) {
         if (!interrupt_wait(log->fd, INTERRUPT_READ)) {
-            log->interrupted = true;
             return -1;
         }
         const ssize_t count = read(log->fd, bytes, size);
         if ((count == 0) && interrupt_pending()) { /* Ctrl-C ended what wrote the log, too */
-            log->interrupted = true;
             return -1;
         }
         if (count >= 0) {

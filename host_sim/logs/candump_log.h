@@ -40,7 +40,6 @@ typedef struct {
     uint64_t line;    /**< number of the line that was read last, from 1 */
     uint64_t skipped; /**< bad lines skipped so far */
     bool skip_bad;    /**< skip and count bad lines; else they end the reading */
-    bool interrupted; /**< a signal asked the program to end */
     int fd;
     bool at_end;
     bool is_cut_off; /**< the line that was read last is the last one, and has no line feed */
@@ -62,7 +61,7 @@ typedef struct {
 typedef enum {
     CANDUMP_RECORD, /**< a frame was read */
     CANDUMP_END,    /**< there are no more */
-    CANDUMP_FAILED  /**< a bad line, or a read error: was reported. Or `interrupted`, which was not. */
+    CANDUMP_FAILED  /**< a bad line, or a read error: was reported. Or interrupted (a signal), not reported. */
 } candump_result_t;
 
 /**

@@ -16,8 +16,9 @@
 
 #include "agv/config.h"
 #include "agv/state.h"
+#include "common/message_facts.h"
 #include "hal/can.h"
-#include "monitor/inputs/monitor_log.h"
+#include "monitor/monitor_log.h"
 #include "monitor/monitor_shadow.h"
 #include "session/session.h"
 #include "traffic/engagement.h"
@@ -50,8 +51,8 @@ typedef struct {
     bool was_late[2];     /**< it was late in this half second, and in the one before */
     bool has_been_late;   /**< since the start, or since monitor_reset() */
     bool has_counter;
-    bool is_stuck;       /**< frames come, but their alive counter has not changed for longer than the deadline */
-    uint8_t counter;     /**< as in the last frame */
+    bool is_stuck; /**< frames come, but their alive counter has not changed for longer than the deadline */
+    message_beat_t counter;
     uint64_t counter_us; /**< when it changed last */
     uint64_t listed_us;  /**< start of the second in which changes of its signals are counted */
     uint8_t listed;      /**< changes in it that were listed */

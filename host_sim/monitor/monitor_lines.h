@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-#include "monitor/inputs/monitor_log.h"
+#include "monitor/monitor_log.h"
 
 /** Print an entry. A monitor_entry_fn; @p ctx is not used. */
 void monitor_lines_print(void *ctx, const monitor_entry_t *entry);

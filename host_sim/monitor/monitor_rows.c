@@ -136,12 +136,11 @@ static void take_gap(monitor_row_t *row, uint64_t gap_us) {
 
 static void take_counter(monitor_t *monitor, monitor_row_t *row, const uint8_t data[AGV_DLC], uint64_t t_us) {
     const uint8_t counter = data[message_counter_at(row->message)];
-    if ((row->count == 0u) || (counter != row->counter)) {
+    if (message_beats(&row->counter, &monitor->config, row->message, counter)) {
         if (row->is_stuck) {
             row->is_stuck = false;
             say(monitor, row, t_us, MONITOR_GOOD, "counts again after", (t_us - row->counter_us) / US_PER_MS);
         }
-        row->counter = counter;
         row->counter_us = t_us;
     } else if (!row->is_stuck && !row->is_late && (t_us > row->counter_us + row->deadline_us)) {
         row->is_stuck = true;

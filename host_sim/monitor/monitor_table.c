@@ -136,7 +136,7 @@ static void draw_counter(monitor_view_t *view, int y, int x, const monitor_t *mo
     char text[CELL_SIZE] = "";
     (void)monitor;
     if (row->has_counter && (row->count > 0u)) {
-        (void)snprintf(text, sizeof text, "%u", (unsigned)row->counter);
+        (void)snprintf(text, sizeof text, "%u", (unsigned)row->counter.value);
     }
     right(view, y, x, COUNTER_WIDTH, row->is_stuck ? STYLE_BAD : style, text);
 }

@@ -4,13 +4,13 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-enum { EIGHTHS = 8, PRINT_SIZE = 512, BYTES_MAX = 4 };
+#include "text/text.h"
+
+enum { EIGHTHS = 8, PRINT_SIZE = 512 };
 
 #define BLANK ((uint32_t)' ')
 #define FULL_BLOCK 0x2588u /* its seven thinner ones follow it: 2589h is seven eighths, 258Fh is one */
 #define TRACK 0x00B7u      /* a dot in the middle */
-#define CONTINUATION_MASK 0xC0u
-#define CONTINUATION 0x80u
 
 static int clamp(int value, int highest) {
     return (value < 0) ? 0 : ((value > highest) ? highest : value);
@@ -37,28 +37,18 @@ void monitor_view_fill(monitor_view_t *view, int y, monitor_style_t style) {
 }
 
 /** The next character of a text; what is no UTF-8 or cannot be shown is a question mark. */
-static uint32_t next_character(const unsigned char **text) {
-    const unsigned char *at = *text;
-    const bool is_3 = (at[0] & 0xF0u) == 0xE0u;
-    const bool is_2 = (at[0] & 0xE0u) == 0xC0u;
-    const int more = is_3 ? 2 : (is_2 ? 1 : 0);
-    uint32_t character = is_3 ? (at[0] & 0x0Fu) : (is_2 ? (at[0] & 0x1Fu) : at[0]);
-    for (int i = 1; i <= more; i++) {
-        if ((at[i] & CONTINUATION_MASK) != CONTINUATION) {
-            *text = &at[1];
-            return (uint32_t)'?';
-        }
-        character = (character << 6) | (at[i] & 0x3Fu);
-    }
-    *text = &at[1 + more];
-    const bool is_shown = (more > 0) ? (character >= 0xA0u) : ((character >= BLANK) && (character < 0x7Fu));
-    return is_shown ? character : (uint32_t)'?';
+static uint32_t next_character(const char **text) {
+    uint32_t character = 0u;
+    const size_t length = text_character(*text, &character);
+    *text += (length > 0u) ? length : 1u;
+    const bool is_ascii = (character >= BLANK) && (character < 0x7Fu);
+    const bool is_other = (character >= 0xA0u) && (character <= 0xFFFFu);
+    return ((length > 0u) && (is_ascii || is_other)) ? character : (uint32_t)'?';
 }
 
 int monitor_view_put(monitor_view_t *view, int y, int x, monitor_style_t style, const char *text) {
-    const unsigned char *at = (const unsigned char *)text;
-    while (*at != '\0') {
-        set(view, y, x, style, next_character(&at));
+    while (*text != '\0') {
+        set(view, y, x, style, next_character(&text));
         x++;
     }
     return x;
@@ -88,32 +78,4 @@ void monitor_view_bar(monitor_view_t *view, int y, int x, int width, monitor_sty
             set(view, y, x + i, STYLE_DIM, TRACK);
         }
     }
-}
-
-/** @return bytes written */
-static size_t encode(uint32_t character, char bytes[BYTES_MAX]) {
-    if (character < 0x80u) {
-        bytes[0] = (char)character;
-        return 1u;
-    }
-    if (character < 0x800u) {
-        bytes[0] = (char)(0xC0u | (character >> 6));
-        bytes[1] = (char)(0x80u | (character & 0x3Fu));
-        return 2u;
-    }
-    bytes[0] = (char)(0xE0u | (character >> 12));
-    bytes[1] = (char)(0x80u | ((character >> 6) & 0x3Fu));
-    bytes[2] = (char)(0x80u | (character & 0x3Fu));
-    return 3u;
-}
-
-void monitor_view_text(const monitor_view_t *view, int y, char *text, size_t size) {
-    size_t used = 0u;
-    size_t end = 0u;
-    for (int x = 0; (y < view->height) && (x < view->width) && (used + BYTES_MAX < size); x++) {
-        const uint32_t character = view->cells[y][x].character;
-        used += encode(character, &text[used]);
-        end = (character != BLANK) ? used : end;
-    }
-    text[end] = '\0';
 }

@@ -53,7 +53,4 @@ void monitor_view_fill(monitor_view_t *view, int y, monitor_style_t style);
 void monitor_view_bar(monitor_view_t *view, int y, int x, int width, monitor_style_t style, uint64_t part,
                       uint64_t whole);
 
-/** A line as text (UTF-8) without the blanks at its end. @param size of @p text; 4 bytes a cell are enough */
-void monitor_view_text(const monitor_view_t *view, int y, char *text, size_t size);
-
 #endif

@@ -1,6 +1,6 @@
 /**
  * @file civil.h
- * Dates as people write them, as microseconds since 1970.
+ * Dates as people write them, as seconds since 1970.
  */
 #ifndef HOST_SIM_CIVIL_H
 #define HOST_SIM_CIVIL_H

@@ -4,14 +4,14 @@
 
 enum { STEP_MAX = 3 };
 
-counter_step_t counter_use_add(counter_use_t *use, uint8_t value, uint64_t t_us) {
+void counter_use_add(counter_use_t *use, uint8_t value, uint64_t t_us) {
     const uint8_t step = (uint8_t)(value - use->value);
     const bool is_first = use->frames == 0u;
     use->value = value;
     use->frames++;
     if (is_first) {
         use->changed_us = t_us;
-        return COUNTER_STEP;
+        return;
     }
     if (step == 0u) {
         use->repeats++;
@@ -19,16 +19,15 @@ counter_step_t counter_use_add(counter_use_t *use, uint8_t value, uint64_t t_us)
             use->longest_us = t_us - use->changed_us;
             use->longest_at_us = use->changed_us;
         }
-        return COUNTER_REPEAT;
+        return;
     }
     use->changed_us = t_us;
     if (step <= (uint8_t)STEP_MAX) {
         use->steps++;
-        return COUNTER_STEP;
+        return;
     }
     use->other_at_us = (use->other_steps == 0u) ? t_us : use->other_at_us;
     use->other_steps++;
-    return COUNTER_JUMP;
 }
 
 counter_kind_t counter_use_kind(const counter_use_t *use) {

@@ -31,11 +31,8 @@ typedef struct {
 /** Frames that are needed to say how a counter counts. */
 #define COUNTER_USE_FRAMES_MIN 20u
 
-/** What a frame's counter is after the one before. */
-typedef enum { COUNTER_REPEAT, COUNTER_STEP, COUNTER_JUMP } counter_step_t;
-
-/** Take the counter of a frame. @return by how much it changed: 0, 1 to 3, or more; COUNTER_STEP for the first frame */
-counter_step_t counter_use_add(counter_use_t *use, uint8_t value, uint64_t t_us);
+/** Take the counter of a frame. */
+void counter_use_add(counter_use_t *use, uint8_t value, uint64_t t_us);
 
 /** How it counts. */
 counter_kind_t counter_use_kind(const counter_use_t *use);

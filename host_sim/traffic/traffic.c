@@ -89,7 +89,10 @@ static bool allocate_parts(const traffic_t *traffic, traffic_id_t *entry) {
     }
     if ((entry->message != SIGNALS_STATUS_FRAME) && (entry->side == side_of(traffic, entry->message))) {
         entry->watch = calloc(1u, sizeof *entry->watch);
-        good = good && (entry->watch != NULL) && watch_init(entry->watch, &traffic->config, entry->message);
+        good = good && (entry->watch != NULL);
+        if (good) {
+            watch_init(entry->watch, &traffic->config, entry->message);
+        }
     }
     return good;
 }
@@ -195,14 +198,6 @@ static void take_mode(traffic_t *traffic, uint8_t flags, uint64_t t_us) {
     apply_to_engaged(traffic, t_us, watch_start);
 }
 
-/** Whether the setting of a heartbeat's sender accepts a step of its counter. */
-static bool is_heartbeat(const traffic_t *traffic, uint32_t message, counter_step_t step) {
-    const uint16_t choice = (message == (uint32_t)AGV_MSG_VEHICLE_STATUS)    ? traffic->config.vcu_counter
-                            : (message == (uint32_t)AGV_MSG_STEERING_STATUS) ? traffic->config.eps_counter
-                                                                             : traffic->config.ai_counter;
-    return (step == COUNTER_STEP) || ((step == COUNTER_JUMP) && (choice == AGV_COUNTER_ANY));
-}
-
 /** Take a well-formed frame of a known message. */
 static void take_known(traffic_t *traffic, traffic_id_t *entry, const hal_can_frame_t *frame, uint64_t t_us) {
     const uint32_t message = entry->message;
@@ -212,8 +207,9 @@ static void take_known(traffic_t *traffic, traffic_id_t *entry, const hal_can_fr
     }
     bool restarts = (message >= AGV_COMMAND_COUNT) || agv_value_is_valid(message, frame->data);
     if (entry->counter != NULL) {
-        const counter_step_t step = counter_use_add(entry->counter, frame->data[counter_at(message)], t_us);
-        restarts = is_heartbeat(traffic, message, step);
+        const uint8_t counter = frame->data[counter_at(message)];
+        counter_use_add(entry->counter, counter, t_us);
+        restarts = message_beats(&entry->beat, &traffic->config, message, counter);
     }
     if ((entry->watch != NULL) && restarts) {
         watch_restart(entry->watch, t_us);

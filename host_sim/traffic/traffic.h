@@ -15,6 +15,7 @@
 #include <stdint.h>
 
 #include "agv/config.h"
+#include "common/message_facts.h"
 #include "hal/can.h"
 #include "traffic/counter_use.h"
 #include "traffic/gaps.h"
@@ -24,7 +25,7 @@
 #define TRAFFIC_UNKNOWN UINT32_MAX
 
 /** When the silence of a message counts (SUP-2, SUP-3). */
-typedef enum { TRAFFIC_NEVER, TRAFFIC_ALWAYS, TRAFFIC_ENGAGED } traffic_when_t;
+typedef enum { TRAFFIC_ALWAYS, TRAFFIC_ENGAGED } traffic_when_t;
 
 /** The range of one signal. */
 typedef struct {
@@ -40,13 +41,13 @@ typedef struct {
 /** What a deadline measures: gaps between the frames that restart it. */
 typedef struct {
     traffic_when_t when;
-    uint16_t setting;     /**< AGV_SETTING_* of the deadline */
-    uint32_t deadline_ms; /**< 0: none */
-    gaps_t gaps;          /**< a silence that lasts until traffic_end() is in it if it is late */
-    uint64_t late;        /**< gaps that were longer than the deadline */
-    uint64_t late_at_us;  /**< when the first of them exceeded it */
-    uint64_t since_us;    /**< when the deadline was restarted last */
-    bool is_running;      /**< it was restarted at least once, and nothing stopped it */
+    uint16_t setting; /**< AGV_SETTING_* of the deadline */
+    uint32_t deadline_ms;
+    gaps_t gaps;         /**< a silence that lasts until traffic_end() is in it if it is late */
+    uint64_t late;       /**< gaps that were longer than the deadline */
+    uint64_t late_at_us; /**< when the first of them exceeded it */
+    uint64_t since_us;   /**< when the deadline was restarted last */
+    bool is_running;     /**< it was restarted at least once, and nothing stopped it */
 } traffic_watch_t;
 
 /** What is known of one identifier on one side. */
@@ -68,6 +69,7 @@ typedef struct {
     /** @name Only of a known message, else zero @{ */
     traffic_watch_t *watch;  /**< NULL: unknown */
     counter_use_t *counter;  /**< NULL: the message has no alive counter */
+    message_beat_t beat;     /**< this counter, as the supervisor follows it */
     traffic_range_t *ranges; /**< of each signal; NULL: unknown */
     /** @} */
 } traffic_id_t;

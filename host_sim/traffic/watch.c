@@ -3,15 +3,11 @@
 #include "common/message_facts.h"
 #include "text/units.h"
 
-bool watch_init(traffic_watch_t *watch, const agv_config_t *config, uint32_t message) {
-    if (message >= (uint32_t)AGV_MSG_COUNT) {
-        return false;
-    }
+void watch_init(traffic_watch_t *watch, const agv_config_t *config, uint32_t message) {
     const bool is_command = (message < AGV_COMMAND_COUNT) && (message != (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND);
     watch->when = is_command ? TRAFFIC_ENGAGED : TRAFFIC_ALWAYS;
     watch->setting = message_deadline_setting(message);
     watch->deadline_ms = agv_config_get(config, watch->setting);
-    return true;
 }
 
 static void add_gap(traffic_watch_t *watch, uint64_t gap_us) {

@@ -7,8 +7,8 @@
 
 #include "traffic/traffic.h"
 
-/** Set up the deadline of a message. @return false: the message has none */
-bool watch_init(traffic_watch_t *watch, const agv_config_t *config, uint32_t message);
+/** Set up the deadline of a message of the protocol (below AGV_MSG_COUNT). */
+void watch_init(traffic_watch_t *watch, const agv_config_t *config, uint32_t message);
 
 /** A frame restarts the deadline. */
 void watch_restart(traffic_watch_t *watch, uint64_t t_us);

@@ -286,7 +286,6 @@ static void take_status(why_t *why, agv_message_t message, const why_evidence_t 
         break;
     case AGV_MSG_GEAR_STATUS:
         why->facts.gear = frame->frame.data[0];
-        why->facts.gear_known = true;
         break;
     case AGV_MSG_WHEEL_SPEED:
         take_wheels(why, frame);

@@ -39,6 +39,9 @@ report 'a source of firmware/src is not in a folder of a module group' < <(find 
 # A room includes itself and those before it. $1: the folder of the rooms; then the rooms in order
 check_order() {
     local root=$1 order=("${@:2}") i later
+    report "rooms of $root without a place in the order, or in the order and not there" < <(
+        comm -3 <(printf '%s\n' "${order[@]%%/*}" | sort -u) <(cd "$root" && find . -mindepth 2 -name '*.[ch]' | cut -d/ -f2 | sort -u)
+    )
     for ((i = 0; i < ${#order[@]}; i++)); do
         later=$(printf '|%s' "${order[@]:i+1}")
         report "$root/${order[i]} includes a later room of ${order[*]}" < <(

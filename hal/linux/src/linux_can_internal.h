@@ -29,6 +29,7 @@ bool linux_can_link_read(const void *message, size_t size, linux_can_link_t *lin
 /**
  * Look for an interface by rtnetlink. An ioctl with a name that does not exist would start modprobe and wait for it, at
  * every search for an adapter that was unplugged.
+ * @param name at most LINUX_CAN_NAME_MAX characters
  * @param kind ARPHRD_CAN for one that carries CAN
  * @return 0, or an errno
  */

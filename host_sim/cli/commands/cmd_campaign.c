@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "agv/names.h"
+#include "campaign/campaign_bounds.h"
 #include "campaign/campaign_run.h"
 #include "campaign/fault_option.h"
 #include "cli/commands/commands.h"
@@ -165,7 +166,8 @@ static status_t print_tables(const given_t *given) {
         return STATUS_UNUSABLE;
     }
     output_t *output = calloc(1u, sizeof *output);
-    const bool good = (output != NULL) && output_open(output, "-") && campaign_print_tables(output);
+    const bool good =
+        ((output != NULL) || report("out of memory")) && output_open(output, "-") && campaign_print_tables(output);
     const bool written = good && output_commit(output);
     free(output);
     return written ? STATUS_OK : STATUS_UNUSABLE;

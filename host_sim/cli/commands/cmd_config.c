@@ -59,7 +59,6 @@ status_t cmd_config(int argc, char **argv) {
         .instead = "--config",
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
-        .operand = "",
     };
     size_t operands = 0u;
     const options_result_t parsed = options_parse(&syntax, argc, argv, &operands);

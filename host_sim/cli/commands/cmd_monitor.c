@@ -20,7 +20,6 @@
 /** The given options. */
 typedef struct {
     monitor_request_t request;
-    interface_options_t bus;
     config_options_t config;
     bool has_speed;
 } given_t;
@@ -47,7 +46,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     monitor_request_t *request = &given->request;
     option_t interface_rows[INTERFACE_OPTIONS];
     option_t config_rows[CONFIG_OPTIONS];
-    interface_options_init(&given->bus, interface_rows);
+    interface_options_init(&given->request.bus, interface_rows);
     config_options_init(&given->config, config_rows);
     const option_t rows[] = {
         OPTION_TEXT("--record", "FILE", "record the bus into this candump log, a new file", &request->record),
@@ -90,7 +89,6 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         .instead = "--log",
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
-        .operand = "argument",
     };
     size_t operands = 0u;
     return options_parse(&syntax, argc, argv, &operands);
@@ -99,7 +97,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
 static bool check_log(const given_t *given) {
     const monitor_request_t *request = &given->request;
     const bool is_gateway = request->config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
-    if ((given->bus.interfaces[HAL_CAN_VEHICLE] != NULL) || (given->bus.interfaces[HAL_CAN_AI] != NULL)) {
+    if ((given->request.bus.interfaces[HAL_CAN_VEHICLE] != NULL) ||
+        (given->request.bus.interfaces[HAL_CAN_AI] != NULL)) {
         return report("--log and --can exclude each other");
     }
     if (request->record != NULL) {
@@ -124,10 +123,10 @@ static bool check_bus(const given_t *given) {
     if (of_log != NULL) {
         return report("%s needs --log", of_log);
     }
-    if (given->bus.interfaces[HAL_CAN_VEHICLE] == NULL) {
+    if (given->request.bus.interfaces[HAL_CAN_VEHICLE] == NULL) {
         return report("--can or --log is missing: what to watch; see host_sim monitor --help");
     }
-    return interface_options_check(&given->bus, "monitor",
+    return interface_options_check(&given->request.bus, "monitor",
                                    given->request.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY);
 }
 
@@ -152,10 +151,7 @@ status_t cmd_monitor(int argc, char **argv) {
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
-    request->interfaces[HAL_CAN_VEHICLE] = given.bus.interfaces[HAL_CAN_VEHICLE];
-    request->interfaces[HAL_CAN_AI] = given.bus.interfaces[HAL_CAN_AI];
-    request->for_ms = given.bus.for_ms;
-    given.config.has_ai_side = (request->interfaces[HAL_CAN_AI] != NULL) || (request->ai_interface != NULL);
+    given.config.has_ai_side = (request->bus.interfaces[HAL_CAN_AI] != NULL) || (request->ai_interface != NULL);
     if (!check_files(&given) || !config_options_make(&given.config, &request->config) ||
         !((request->log != NULL) ? check_log(&given) : check_bus(&given))) {
         return STATUS_UNUSABLE;

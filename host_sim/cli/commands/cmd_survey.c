@@ -55,7 +55,6 @@ static options_result_t parse(int argc, char **argv, given_t *given, size_t *ope
         .group_count = sizeof groups / sizeof groups[0],
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
-        .operands_min = 0u,
         .operands_max = 1u,
         .operand = "LOG",
     };

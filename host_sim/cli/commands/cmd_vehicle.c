@@ -69,7 +69,6 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         .instead = "--can",
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
-        .operand = "argument",
     };
     size_t operands = 0u;
     return options_parse(&syntax, argc, argv, &operands);

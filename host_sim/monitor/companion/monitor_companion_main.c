@@ -110,19 +110,29 @@ static void pass_typed(companion_t *this) {
     }
 }
 
+static void end_recording(companion_t *this) {
+    if (!monitor_record_end(&this->record)) {
+        monitor_note(this->monitor, MONITOR_WARN, "recording failed", strerror(this->record.error));
+    }
+    this->ui.page.recording = NULL;
+}
+
 static void toggle_recording(companion_t *this) {
     this->ui.wish.toggles_recording = false;
     if (this->record.fd >= 0) {
-        (void)monitor_record_end(&this->record);
+        end_recording(this);
     } else if (!monitor_record_begin(&this->record, NULL)) {
         monitor_note(this->monitor, MONITOR_WARN, "record", strerror(errno));
+    } else {
+        this->ui.page.recording = this->record.name;
     }
-    this->ui.page.recording = (this->record.fd >= 0) ? this->record.name : NULL;
 }
 
 static void go_round(companion_t *this) {
     monitor_can_pass(&this->bus, this->monitor, &this->record);
-    (void)monitor_record_flush(&this->record);
+    if (!monitor_record_flush(&this->record) && (this->record.fd >= 0)) {
+        end_recording(this);
+    }
     read_messages(this);
     read_text(this);
     monitor_ui_keys(&this->ui);
@@ -193,7 +203,7 @@ int monitor_companion_main(const monitor_companion_config_t *config, const monit
     } else {
         status = STATUS_UNUSABLE;
     }
-    (void)monitor_record_end(&this->record);
+    status = monitor_record_close(&this->record) ? status : STATUS_UNUSABLE;
     monitor_can_close(&this->bus);
     monitor_free(this->monitor);
     free(this);

@@ -8,6 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "common/report.h"
 #include "logs/candump_line.h"
 #include "text/units.h"
 
@@ -100,4 +101,18 @@ bool monitor_record_end(monitor_record_t *record) {
         record->fd = NO_FILE;
     }
     return good;
+}
+
+bool monitor_record_close(monitor_record_t *record) {
+    const uint64_t left_out = record->left_out;
+    record->left_out = 0u;
+    if (!monitor_record_end(record)) {
+        const int error = record->error;
+        record->error = 0;
+        return report("%s: %s", record->name, strerror(error));
+    }
+    if (left_out > 0u) {
+        note("%s: %" PRIu64 " CAN FD frames are not in it", record->name, left_out);
+    }
+    return true;
 }

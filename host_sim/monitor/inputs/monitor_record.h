@@ -41,4 +41,7 @@ bool monitor_record_flush(monitor_record_t *record);
 /** End it. @return as monitor_record_flush() */
 bool monitor_record_end(monitor_record_t *record);
 
+/** End it, and say on standard error what failed or is not in the file. @return as monitor_record_flush() */
+bool monitor_record_close(monitor_record_t *record);
+
 #endif

@@ -1,7 +1,6 @@
 #include "monitor/inputs/monitor_run.h"
 
 #include <errno.h>
-#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,25 +42,13 @@ static bool begin_record(run_t *run, const char *path) {
     return true;
 }
 
-static bool end_record(run_t *run) {
-    const uint64_t left_out = run->record.left_out;
-    if (!monitor_record_end(&run->record)) {
-        return report("%s: %s", run->record.name, strerror(run->record.error));
-    }
-    run->record.left_out = 0u;
-    if (left_out > 0u) {
-        note("%s: %" PRIu64 " CAN FD frames are not in it", run->record.name, left_out);
-    }
-    return true;
-}
-
 static bool is_recording(const run_t *run) {
     return run->record.fd >= 0;
 }
 
 static void toggle_recording(run_t *run) {
     if (is_recording(run)) {
-        run->failed = !end_record(run) || run->failed;
+        run->failed = !monitor_record_close(&run->record) || run->failed;
     } else if (!monitor_record_begin(&run->record, NULL)) {
         monitor_note(run->monitor, MONITOR_WARN, "record", strerror(errno));
     }
@@ -76,7 +63,7 @@ static bool pass(run_t *run, uint64_t now_ms) {
         monitor_can_pass(&run->bus, run->monitor, &run->record);
         if (is_recording(run) && !monitor_record_flush(&run->record)) {
             run->failed = true;
-            (void)end_record(run);
+            (void)monitor_record_close(&run->record);
             run->ui.page.recording = NULL;
         }
         return true;
@@ -107,16 +94,16 @@ static void obey(run_t *run) {
 /** One round. @return false: that was the last one */
 static bool go_round(run_t *run, uint64_t begin_ms) {
     const uint64_t now_ms = monotonic_ms() - begin_ms;
-    const uint64_t for_ms = run->request->for_ms;
+    const uint64_t for_ms = run->request->bus.for_ms;
     const bool goes_on = pass(run, now_ms);
     if (!run->has_screen) {
-        return monitor_lines_flush() && goes_on && ((for_ms == MONITOR_UNTIL_SIGNAL) || (now_ms < for_ms));
+        return monitor_lines_flush() && goes_on && ((for_ms == INTERFACE_UNTIL_SIGNAL) || (now_ms < for_ms));
     }
     run->ui.page.has_ended = !goes_on;
     monitor_ui_keys(&run->ui);
     obey(run);
     monitor_ui_draw(&run->ui, now_ms);
-    return !run->ui.wish.quits && !run->file.failed && ((for_ms == MONITOR_UNTIL_SIGNAL) || (now_ms < for_ms));
+    return !run->ui.wish.quits && !run->file.failed && ((for_ms == INTERFACE_UNTIL_SIGNAL) || (now_ms < for_ms));
 }
 
 static void go(run_t *run) {
@@ -136,7 +123,7 @@ static bool open_input(run_t *run) {
     if (request->log != NULL) {
         return monitor_file_open(&run->file, request->log, request->ai_interface, request->skip_bad_lines);
     }
-    return monitor_can_open(&run->bus, request->interfaces);
+    return monitor_can_open(&run->bus, request->bus.interfaces);
 }
 
 static bool make_monitor(run_t *run) {
@@ -144,8 +131,8 @@ static bool make_monitor(run_t *run) {
     const bool is_log = request->log != NULL;
     const monitor_config_t config = {
         .config = &request->config,
-        .interfaces = {[HAL_CAN_VEHICLE] = is_log ? run->file.interface : request->interfaces[HAL_CAN_VEHICLE],
-                       [HAL_CAN_AI] = is_log ? request->ai_interface : request->interfaces[HAL_CAN_AI]},
+        .interfaces = {[HAL_CAN_VEHICLE] = is_log ? run->file.interface : request->bus.interfaces[HAL_CAN_VEHICLE],
+                       [HAL_CAN_AI] = is_log ? request->ai_interface : request->bus.interfaces[HAL_CAN_AI]},
         .is_gateway = request->config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY,
         .shadow = request->shadow,
         .on_entry = run->has_screen ? NULL : monitor_lines_print,
@@ -180,7 +167,7 @@ static bool run_all(run_t *run) {
     if (run->has_screen) {
         monitor_ui_close(&run->ui);
     }
-    run->failed = !end_record(run) || run->failed;
+    run->failed = !monitor_record_close(&run->record) || run->failed;
     if (run->request->log != NULL) {
         monitor_file_remark(&run->file);
     }

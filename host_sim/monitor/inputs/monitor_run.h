@@ -9,23 +9,19 @@
 #include <stdint.h>
 
 #include "agv/config.h"
+#include "cli/interface_options.h"
 #include "common/report.h"
-#include "hal/can.h"
 
 /** As a speed: as fast as possible. */
 #define MONITOR_SPEED_ANY 0.0
 
-/** As a time to run for: until a signal comes, or a key. */
-#define MONITOR_UNTIL_SIGNAL 0u
-
 /** What to watch. */
 typedef struct {
-    const char *interfaces[HAL_CAN_SIDES]; /**< NULL: none, or a log */
-    const char *log;                       /**< NULL: the interfaces */
-    const char *ai_interface;              /**< of the log; NULL: none */
-    const char *record;                    /**< file to record the bus into from the start on; NULL: none */
-    double speed;                          /**< of the log; MONITOR_SPEED_ANY */
-    uint64_t for_ms;
+    interface_options_t bus;  /**< no interfaces: a log */
+    const char *log;          /**< NULL: the interfaces */
+    const char *ai_interface; /**< of the log; NULL: none */
+    const char *record;       /**< file to record the bus into from the start on; NULL: none */
+    double speed;             /**< of the log; MONITOR_SPEED_ANY */
     bool shadow;
     bool skip_bad_lines; /**< of the log */
     agv_config_t config;

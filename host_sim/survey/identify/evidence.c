@@ -117,8 +117,8 @@ void evidence_frame(evidence_t *evidence, hal_can_side_t side, const hal_can_fra
     heard->frames++;
     if (frame->length == AGV_DLC) {
         take_fields(heard, frame->data, t_us);
-        (void)counter_use_add(&heard->counters[0], frame->data[FIRST_COUNTER_AT], t_us);
-        (void)counter_use_add(&heard->counters[1], frame->data[LAST_COUNTER_AT], t_us);
+        counter_use_add(&heard->counters[0], frame->data[FIRST_COUNTER_AT], t_us);
+        counter_use_add(&heard->counters[1], frame->data[LAST_COUNTER_AT], t_us);
     }
 }
 

@@ -1,5 +1,8 @@
 /* What the screen shows, as lines of text. */
+#include <limits.h>
+#include <locale.h>
 #include <stdlib.h>
+#include <uchar.h>
 
 #include "monitor/monitor_page.h"
 #include "monitor_fixture.h"
@@ -8,6 +11,7 @@ static monitor_view_t *view;
 static monitor_page_t page;
 
 void setUp(void) {
+    TEST_ASSERT_NOT_NULL(setlocale(LC_CTYPE, "C.UTF-8"));
     agv_config_defaults(&settings);
     view = calloc(1u, sizeof *view);
     page = (monitor_page_t){.title = "monitor"};
@@ -24,10 +28,17 @@ static void draw(int width, int height) {
     monitor_page_draw(view, monitor, &page);
 }
 
-/* A line; is overwritten by the next call. */
+/* A line in UTF-8 without the blanks at its end; is overwritten by the next call. */
 static const char *line(int y) {
-    static char text[4 * MONITOR_VIEW_WIDTH_MAX + 1];
-    monitor_view_text(view, y, text, sizeof text);
+    static char text[MB_LEN_MAX * MONITOR_VIEW_WIDTH_MAX + 1];
+    mbstate_t state = {0};
+    size_t used = 0;
+    size_t end = 0;
+    for (int x = 0; (y < view->height) && (x < view->width); x++) {
+        used += c32rtomb(&text[used], view->cells[y][x].character, &state);
+        end = (view->cells[y][x].character != ' ') ? used : end;
+    }
+    text[end] = '\0';
     return text;
 }
 

@@ -1,4 +1,4 @@
-#include "monitor/inputs/monitor_log.h"
+#include "monitor/monitor_log.h"
 
 #include <stdio.h>
 

@@ -1,4 +1,5 @@
-/* The tables that the reaction times follow from, as the code has them, for scripts/tools/reaction-time.py. */
+#include "campaign/campaign_bounds.h"
+
 #include <jansson.h>
 
 #include "agv/names.h"
@@ -38,7 +39,8 @@ static const char *name_of(uint16_t setting) {
 static json_t *flags_of(const campaign_row_t *row) {
     static const char *const names[] = {"gateway", "shared",    "engaged", "manual",     "start",
                                         "later",   "output",    "as_trip", "unreliable", "no_output",
-                                        "no_wire", "at_once_p", "late_ai", "again"};
+                                        "no_wire", "at_once_p", "late_ai", "again",      "in_gear"};
+    _Static_assert(CAMPAIGN_FLAGS_END == (1u << (sizeof names / sizeof names[0])), "a flag has no name");
     json_t *list = json_array();
     for (size_t bit = 0u; bit < sizeof names / sizeof names[0]; bit++) {
         if (((row->flags >> bit) & 1u) != 0u) {
