@@ -66,8 +66,8 @@ static void print_all(FILE *file, const proposal_t *proposal, const char *source
     }
     (void)fputc('\n', file);
     print_comment(file, "",
-                  "These faults must stay trips (INT-2): the heartbeats of VCU and EPS, of the AI computer while "
-                  "engaged, and the EPS faults marked \"-\" in docs/faults.md.");
+                  "The class of a fault that has \"-\" in the column \"may be\" of docs/faults.md cannot be changed "
+                  "(INT-2).");
 }
 
 char *proposal_yaml(const proposal_t *proposal, const char *source) {

@@ -245,7 +245,7 @@ def board(name, pins):
     height = 110 + sum(26 * len(signals) + 26 for _, signals, _ in blocks)
     d = Drawing(760, height, f"Pins of {name}")
     d.text(24, 34, name, "title")
-    d.text(736, 34, "Not built by us", "small", "end")
+    d.text(736, 34, "Not built, not measured", "small", "end")
     d.rectangle(470, 52, 266, height - 70, "board")
     d.text(490, 72, "connector", "small bold")
     d.text(640, 72, "processor", "small bold")
