@@ -203,6 +203,9 @@ static bool check_operands(const parsing_t *parsing, size_t operands) {
         return report("%s is missing; see host_sim %.*s --help", syntax->operand, command_length(syntax),
                       syntax->usage);
     }
+    if ((operands > syntax->operands_max) && (syntax->operands_max > 1u)) {
+        return report("%s: more than %zu were given", syntax->operand, syntax->operands_max);
+    }
     if (operands > syntax->operands_max) {
         return refuse_operand(parsing, syntax->operands_max);
     }

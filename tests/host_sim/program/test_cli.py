@@ -167,6 +167,7 @@ class Options(hostsim.Case):
         self.assert_refused(self.run_program("replay", ""), "LOG: the name is empty")
         self.assert_refused(self.run_program("replay", "--", "log", "--tail"), "unexpected argument '--tail' after 'log'")
         self.assert_refused(self.run_program("config", "log"), "unexpected argument 'log'")
+        self.assert_refused(self.run_program("scenario", *["s.yaml"] * 1001), "FILE: more than 1000 were given")
 
     def test_the_limits_of_numbers(self):
         for option, highest in (("--tail", 8640000000), ("--start-ms", 4294967295)):
