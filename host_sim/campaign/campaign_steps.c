@@ -5,21 +5,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "agv/names.h"
+#include "agv/protocol.h"
+#include "config/config_file.h"
 
 void campaign_settings(text_t *text, const campaign_row_t *row) {
-    const char *name = agv_fault_name(row->fault);
-
     if (row->fault == AGV_FAULT_CONFIG_INVALID) {
         text_add(text, "  own_heartbeat: frozen\n");
     }
     if ((row->flags & CAMPAIGN_AS_TRIP) != 0u) {
-        text_add(text, "  class_");
-        for (; *name != '\0'; name++) {
-            const char letter = *name;
-            text_add(text, "%c", ((letter >= 'A') && (letter <= 'Z')) ? letter - 'A' + 'a' : letter);
-        }
-        text_add(text, ": trip\n");
+        char key[CONFIG_CLASS_KEY_SIZE];
+        config_class_key(row->fault, key);
+        text_add(text, "  %s: trip\n", key);
     }
 }
 

@@ -3,22 +3,17 @@
 
 #include "agv/config.h"
 #include "config/config_file.h"
+#include "config/config_text.h"
 #include "hunt/hunt_program.h"
-#include "text/words.h"
 
 enum { ROLLS_MM_S2 = 1 };
 
-/** A setting as its file has it: a word, or a number. */
 static void write_setting(const hunt_setting_t *setting, text_t *text) {
     const agv_setting_info_t *info = agv_setting_info(setting->setting);
-    const char *word = NULL;
+    char value[CONFIG_VALUE_SIZE];
 
-    if (info->words == NULL) {
-        text_add(text, "%s: %u", info->name, setting->value);
-        return;
-    }
-    const size_t length = words_at(info->words, setting->value, &word);
-    text_add(text, "%s: %.*s", info->name, (int)length, word);
+    config_value_text(info, setting->value, value);
+    text_add(text, "%s: %s", info->name, value);
 }
 
 static void write_class(const hunt_program_t *program, uint8_t fault, text_t *text) {

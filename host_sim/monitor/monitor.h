@@ -188,7 +188,4 @@ typedef struct {
 /** The alarms that are there now, each once, in the order of their rank. @return how many */
 size_t monitor_alarms(const monitor_t *monitor, monitor_alarm_t *alarms, size_t room);
 
-/** The LED code of a fault in the protocol document; 0: it has none. */
-uint8_t monitor_led_code(agv_fault_t fault);
-
 #endif

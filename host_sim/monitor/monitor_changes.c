@@ -1,23 +1,12 @@
 /* Transitions of signals: words, flags and alarms that change are listed; numbers are not. */
 #include <string.h>
 
+#include "agv/faults.h"
 #include "monitor/monitor_internal.h"
 #include "text/units.h"
 
 /** Changes of one message that are listed within a second: two senders that disagree would fill the log. */
 enum { LISTED_PER_S = 4, BITS_PER_BYTE = 8 };
-
-static const uint8_t fault_led_codes[] = {
-#define AGV_FAULT(name, class, led, properties) [AGV_FAULT_##name] = (led),
-#define AGV_FAULT_EVENT(name, class, led, properties) [AGV_FAULT_##name] = (led),
-#include "agv/fault_table.def"
-#undef AGV_FAULT
-#undef AGV_FAULT_EVENT
-};
-
-uint8_t monitor_led_code(agv_fault_t fault) {
-    return ((size_t)fault < sizeof fault_led_codes) ? fault_led_codes[fault] : 0u;
-}
 
 static bool is_listed(const signal_info_t *info) {
     return (info->kind == SIGNAL_CHOICE) || (info->kind == SIGNAL_FLAG) || (info->kind == SIGNAL_ALARM);
@@ -49,7 +38,7 @@ void monitor_changes_make(monitor_t *monitor) {
 
 static void list_alarm(monitor_t *monitor, const monitor_row_t *row, const signal_info_t *info, bool is_set,
                        uint64_t t_us) {
-    const unsigned led_code = monitor_led_code(info->fault);
+    const unsigned led_code = agv_fault_led_code(info->fault);
     if (is_set && (led_code > 0u)) {
         monitor_say(monitor, t_us, MONITOR_BAD, monitor_sender(monitor, row), "alarm %s, LED code %u", info->name,
                     led_code);
@@ -127,7 +116,7 @@ static size_t put_alarm(const monitor_t *monitor, monitor_alarm_t *alarms, size_
     }
     const size_t kept = (count < room) ? count : room - 1u;
     memmove(&alarms[place + 1u], &alarms[place], (kept - place) * sizeof alarms[0]);
-    alarm.led_code = monitor_led_code(alarm.fault);
+    alarm.led_code = agv_fault_led_code(alarm.fault);
     alarm.is_trip = agv_config_is_trip(&monitor->config, (uint32_t)alarm.fault);
     alarms[place] = alarm;
     return kept + 1u;

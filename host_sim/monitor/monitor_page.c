@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "agv/faults.h"
 #include "agv/names.h"
 #include "text/units.h"
 
@@ -134,7 +135,7 @@ static void draw_supervisor(monitor_view_t *view, int y, const monitor_t *monito
     x = monitor_view_put(view, y, x, style_of_state(supervisor->state), (state != NULL) ? state : "no valid state");
     if (reason != NULL) {
         x = monitor_view_print(view, y, x, STYLE_BAD, ": %s", reason);
-        const unsigned code = monitor_led_code(supervisor->first_reason);
+        const unsigned code = agv_fault_led_code(supervisor->first_reason);
         if (!supervisor->has_led && (code > 0u)) {
             x = monitor_view_print(view, y, x, STYLE_BAD, "  LED code %u", code);
         }
