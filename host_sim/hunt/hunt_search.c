@@ -9,6 +9,7 @@
 #include "common/prng.h"
 #include "hunt/hunt.h"
 #include "hunt/hunt_state.h"
+#include "io/checkpoint.h"
 #include "text/units.h"
 #include "text/words.h"
 #include "ui/progress.h"
@@ -212,16 +213,9 @@ static void note_interrupted(const hunt_t *hunt) {
     }
 }
 
-/** Before the first run, so that none is lost. */
-static bool may_save(hunt_t *hunt) {
-    const char *path = hunt->request->checkpoint;
-    const bool may = (path == NULL) || output_open(&hunt->file, path);
-    output_discard(&hunt->file);
-    return may;
-}
-
 static status_t run_until_end(hunt_t *hunt) {
-    if (!hunt_state_load(hunt->request, &hunt->state) || !may_save(hunt)) {
+    /* Before the first run, so that none is lost. */
+    if (!hunt_state_load(hunt->request, &hunt->state) || !checkpoint_may_save(hunt->request->checkpoint, &hunt->file)) {
         return STATUS_UNUSABLE;
     }
     interrupt_hold();

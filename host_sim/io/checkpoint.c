@@ -42,6 +42,12 @@ bool checkpoint_check_path(const char *path) {
            report("--checkpoint: a checkpoint is read and written, which standard output cannot be");
 }
 
+bool checkpoint_may_save(const char *path, output_t *file) {
+    const bool may = (path == NULL) || output_open(file, path);
+    output_discard(file);
+    return may;
+}
+
 bool checkpoint_save(const checkpoint_t *checkpoint, output_t *file, const checkpoint_part_t parts[], size_t count) {
     const head_t head = head_of(checkpoint, parts, count);
     const uint32_t checksum = checksum_of(parts, count);

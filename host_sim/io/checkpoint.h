@@ -32,6 +32,9 @@ typedef struct {
 /** Check the path of --checkpoint: standard output cannot be read. NULL is good. @return false: was reported */
 bool checkpoint_check_path(const char *path);
 
+/** Whether it could be written; one that is there stays as it is. @param path NULL is good @return false: was reported */
+bool checkpoint_may_save(const char *path, output_t *file);
+
 /** Write it. @return false: was reported */
 bool checkpoint_save(const checkpoint_t *checkpoint, output_t *file, const checkpoint_part_t parts[], size_t count);
 

@@ -8,6 +8,7 @@
 #include "campaign/soak/soak_internal.h"
 #include "common/interrupt.h"
 #include "common/prng.h"
+#include "io/checkpoint.h"
 #include "scenario/scenario_play.h"
 #include "text/units.h"
 
@@ -246,7 +247,7 @@ static bool prepare(soak_t *soak, const soak_request_t *request) {
     const scenario_watch_t watch = soak_watch(soak);
     scenario_testbed_watch(&soak->testbed, &watch);
     scenario_testbed_start(&soak->testbed);
-    return soak_load(soak) && soak_may_save(soak) &&
+    return soak_load(soak) && checkpoint_may_save(soak->request->checkpoint, &soak->file) &&
            ((request->results == NULL) || output_open(&soak->results, request->results));
 }
 

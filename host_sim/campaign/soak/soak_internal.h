@@ -86,8 +86,6 @@ void soak_check_counters(soak_t *soak);
 /** @name soak_state.c @{ */
 /** Write the checkpoint. @return false: reported */
 bool soak_save(soak_t *soak);
-/** Whether the checkpoint could be written; one that is there stays as it is. @return false: reported */
-bool soak_may_save(soak_t *soak);
 /** Resume from the checkpoint, if it exists. @return false: it belongs to another soak; reported */
 bool soak_load(soak_t *soak);
 /** @} */

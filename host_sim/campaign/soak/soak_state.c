@@ -44,13 +44,6 @@ bool soak_save(soak_t *soak) {
     return checkpoint_save(&checkpoint, &soak->file, parts, sizeof parts / sizeof parts[0]);
 }
 
-bool soak_may_save(soak_t *soak) {
-    const char *path = soak->request->checkpoint;
-    const bool may = (path == NULL) || output_open(&soak->file, path);
-    output_discard(&soak->file);
-    return may;
-}
-
 bool soak_load(soak_t *soak) {
     if ((soak->request->checkpoint != NULL) && !identify_program(soak)) {
         return false;
