@@ -187,6 +187,11 @@ static const char *parse_payload(const char **cursor, hal_can_frame_t *frame) {
     return parse_data(cursor, frame, FD_DATA_MAX);
 }
 
+bool candump_is_from(const candump_record_t *record, const char *interface) {
+    return (interface != NULL) && (strlen(interface) == record->interface_length) &&
+           (memcmp(record->interface, interface, record->interface_length) == 0);
+}
+
 const char *candump_id_text(char text[CANDUMP_ID_SIZE], uint32_t id, uint8_t flags) {
     const bool is_error = (flags & HAL_CAN_ERROR) != 0u;
     const bool is_long = is_error || ((flags & HAL_CAN_EXTENDED) != 0u);

@@ -14,6 +14,7 @@
 #ifndef HOST_SIM_CANDUMP_LINE_H
 #define HOST_SIM_CANDUMP_LINE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -54,6 +55,9 @@ typedef struct {
  * @return NULL: @p record is filled in. Else: what is wrong, a phrase for a message.
  */
 const char *candump_parse(const char *line, size_t length, candump_record_t *record);
+
+/** Whether a record is of an interface. @param interface NULL: it is of none */
+bool candump_is_from(const candump_record_t *record, const char *interface);
 
 /**
  * An identifier as candump writes it: three digits, or eight of an extended identifier and of an error frame.

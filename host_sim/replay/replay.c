@@ -35,7 +35,6 @@ typedef struct {
     uint64_t next_tick_us; /**< stamp of the next tick */
     uint64_t next_tick_ms; /**< and its time since the start */
     uint64_t backward_stamps;
-    size_t ai_interface_length;
     bool ai_was_heard;
     bool unmet; /**< tripped or not supervised at all, and that is a failure */
     analysis_t *analysis;
@@ -86,9 +85,7 @@ static bool run_ticks(replay_t *replay, uint64_t end_us) {
 
 /** The side of a frame's interface. The first frame of the vehicle side also gives its name. */
 static hal_can_side_t side_of(replay_t *replay, const candump_record_t *record) {
-    const char *ai = replay->request->ai_interface;
-    if ((ai != NULL) && (record->interface_length == replay->ai_interface_length) &&
-        (memcmp(record->interface, ai, replay->ai_interface_length) == 0)) {
+    if (candump_is_from(record, replay->request->ai_interface)) {
         replay->ai_was_heard = true;
         return HAL_CAN_AI;
     }
@@ -160,9 +157,9 @@ static void start(replay_t *replay, uint64_t first_us) {
     replay->next_tick_ms = 1u;
     sim_hal_init_direct(&replay->hal, &config, is_gateway ? 2u : 1u, on_sent, replay);
     if (request->ai_interface != NULL) {
-        replay->ai_interface_length = strlen(request->ai_interface);
-        sent_log_heard(&replay->sent, HAL_CAN_AI, request->ai_interface, replay->ai_interface_length);
-        analysis_name_side(replay->analysis, HAL_CAN_AI, request->ai_interface, replay->ai_interface_length);
+        const size_t length = strlen(request->ai_interface);
+        sent_log_heard(&replay->sent, HAL_CAN_AI, request->ai_interface, length);
+        analysis_name_side(replay->analysis, HAL_CAN_AI, request->ai_interface, length);
     }
     analysis_set_clock(replay->analysis, first_us);
     (void)session_observe(&replay->session, analysis_event, replay->analysis);

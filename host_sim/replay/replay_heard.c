@@ -2,14 +2,9 @@
 
 #include <string.h>
 
-static bool is_named(const char *name, const candump_record_t *record) {
-    return (strlen(name) == record->interface_length) &&
-           (memcmp(name, record->interface, record->interface_length) == 0);
-}
-
 static void add_name(replay_heard_t *heard, const candump_record_t *record) {
     for (size_t i = 0u; i < heard->name_count; i++) {
-        if (is_named(heard->names[i], record)) {
+        if (candump_is_from(record, heard->names[i])) {
             heard->last_name = i;
             return;
         }
@@ -42,7 +37,7 @@ static void note_pause(replay_heard_t *heard, uint64_t t_us) {
 void replay_heard_add(replay_heard_t *heard, const candump_record_t *record, uint64_t t_us) {
     const hal_can_frame_t *frame = &record->frame;
     note_pause(heard, t_us);
-    if ((heard->name_count == 0u) || !is_named(heard->names[heard->last_name], record)) {
+    if ((heard->name_count == 0u) || !candump_is_from(record, heard->names[heard->last_name])) {
         add_name(heard, record);
     }
     if ((frame->flags & (HAL_CAN_ERROR | HAL_CAN_REMOTE)) != 0u) {

@@ -30,12 +30,6 @@ static void read_next(monitor_file_t *file) {
     }
 }
 
-static bool is_ai(const monitor_file_t *file) {
-    const candump_record_t *next = &file->next;
-    return (file->ai_interface != NULL) && (strlen(file->ai_interface) == next->interface_length) &&
-           (memcmp(file->ai_interface, next->interface, next->interface_length) == 0);
-}
-
 bool monitor_file_open(monitor_file_t *file, const char *path, const char *ai_interface, bool skip_bad) {
     file->ai_interface = ai_interface;
     file->first_us = UINT64_MAX;
@@ -50,7 +44,7 @@ bool monitor_file_open(monitor_file_t *file, const char *path, const char *ai_in
     if (!file->has_next) {
         return file->failed ? false : report("%s: contains no frame", file->log.name);
     }
-    if (!is_ai(file)) {
+    if (!candump_is_from(&file->next, file->ai_interface)) {
         memcpy(file->interface, file->next.interface, file->next.interface_length);
         file->interface[file->next.interface_length] = '\0';
     }
@@ -60,8 +54,9 @@ bool monitor_file_open(monitor_file_t *file, const char *path, const char *ai_in
 bool monitor_file_pass(monitor_file_t *file, monitor_t *monitor, uint64_t until_us) {
     int passed = 0;
     while (file->has_next && (file->next_us <= until_us) && (passed < (int)FRAMES_AT_ONCE)) {
-        const hal_can_side_t side = is_ai(file) ? HAL_CAN_AI : HAL_CAN_VEHICLE;
-        file->ai_was_heard = file->ai_was_heard || (side == HAL_CAN_AI);
+        const bool is_ai = candump_is_from(&file->next, file->ai_interface);
+        const hal_can_side_t side = is_ai ? HAL_CAN_AI : HAL_CAN_VEHICLE;
+        file->ai_was_heard = file->ai_was_heard || is_ai;
         monitor_frame(monitor, side, &file->next.frame, file->next_us);
         read_next(file);
         passed++;

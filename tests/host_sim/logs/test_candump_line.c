@@ -187,6 +187,15 @@ void test_interfaces(void) {
     parse_bad("(1.000000) can0  43F#", "a hexadecimal identifier followed by # is missing");
 }
 
+void test_a_record_is_from_one_interface(void) {
+    parse_good("(0.000000) can1 43F#");
+    TEST_ASSERT_TRUE(candump_is_from(&record, "can1"));
+    TEST_ASSERT_FALSE(candump_is_from(&record, "can0"));
+    TEST_ASSERT_FALSE(candump_is_from(&record, "can"));
+    TEST_ASSERT_FALSE(candump_is_from(&record, "can10"));
+    TEST_ASSERT_FALSE(candump_is_from(&record, NULL));
+}
+
 void test_identifiers(void) {
     parse_bad("(1.000000) c 800#", "above 7FF");
     parse_bad("(1.000000) c FFF#", "above 7FF");
