@@ -24,6 +24,11 @@ message_sender_t message_sender(uint32_t message) {
     return is_of_eps ? MESSAGE_FROM_EPS : other;
 }
 
+bool message_id_is_heard(const agv_ids_t *ids, uint32_t id) {
+    return (agv_ids_find(ids, id) != AGV_MSG_NONE) || (agv_message_from_id(id, AGV_ID_SET_HEADING) != AGV_MSG_NONE) ||
+           (agv_message_from_id(id, AGV_ID_SET_TABLE) != AGV_MSG_NONE);
+}
+
 uint8_t message_counter_at(uint32_t message) {
     return facts[message].counter_at;
 }

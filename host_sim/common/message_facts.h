@@ -20,6 +20,12 @@
 typedef enum { MESSAGE_FROM_AI, MESSAGE_FROM_VCU, MESSAGE_FROM_EPS } message_sender_t;
 message_sender_t message_sender(uint32_t message);
 
+/**
+ * Whether a supervisor listens to an identifier: that of a message as configured, or in either ID set (P1). The
+ * identifier of its status frame is none of them.
+ */
+bool message_id_is_heard(const agv_ids_t *ids, uint32_t id);
+
 /** The index of the alive counter in data[]; MESSAGE_NO_COUNTER. */
 uint8_t message_counter_at(uint32_t message);
 

@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "agv/protocol.h"
+#include "common/message_facts.h"
 #include "common/report.h"
 #include "hal_linux/linux_hal.h"
 #include "text/units.h"
@@ -22,28 +22,16 @@ struct node {
     session_t session;
 };
 
-static void add_id(node_t *node, uint16_t id) {
-    for (size_t i = 0u; i < node->id_count; i++) {
-        if (node->ids[i] == id) {
-            return;
-        }
-    }
-    node->ids[node->id_count] = id;
-    node->id_count++;
-}
-
 /** What the kernel lets through: the protocol as configured and in both ID sets, as the supervisor watches for the other
- * one (P1). */
+ * one (P1), and the status frame unless it is off. */
 static void choose_ids(node_t *node) {
     agv_ids_t ids;
     agv_config_ids(&node->config, &ids);
-    for (int message = 0; message < (int)AGV_MSG_COUNT; message++) {
-        add_id(node, ids.of[message]);
-        add_id(node, agv_message_id((agv_message_t)message, AGV_ID_SET_HEADING));
-        add_id(node, agv_message_id((agv_message_t)message, AGV_ID_SET_TABLE));
-    }
-    if (node->config.status_frame_id != 0u) {
-        add_id(node, node->config.status_frame_id);
+    for (uint16_t id = 1u; id <= (uint16_t)AGV_ID_MAX; id++) {
+        if (message_id_is_heard(&ids, id) || (id == node->config.status_frame_id)) {
+            node->ids[node->id_count] = id;
+            node->id_count++;
+        }
     }
 }
 

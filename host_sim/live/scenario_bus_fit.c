@@ -3,7 +3,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "agv/protocol.h"
+#include "common/message_facts.h"
 #include "live/scenario_bus.h"
 
 enum { PATH_SIZE = 64 };
@@ -147,9 +147,7 @@ static const char *why_not_ai_side(const scenario_t *scenario) {
 
 /** Whether a frame is one that the kernel hands over to the supervisor (node.c). */
 static bool is_of_protocol(const scenario_t *scenario, uint32_t id) {
-    return (agv_ids_find(&scenario->ids, id) != AGV_MSG_NONE) || (id == scenario->config.status_frame_id) ||
-           (agv_message_from_id(id, AGV_ID_SET_HEADING) != AGV_MSG_NONE) ||
-           (agv_message_from_id(id, AGV_ID_SET_TABLE) != AGV_MSG_NONE);
+    return message_id_is_heard(&scenario->ids, id) || (id == scenario->config.status_frame_id);
 }
 
 /** What the supervisor counts of frames that it is not given here. */

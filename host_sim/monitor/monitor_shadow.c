@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "common/message_facts.h"
 #include "hal_sim/sim_hal.h"
 #include "logs/error_frame.h"
 #include "text/units.h"
@@ -11,27 +12,16 @@
 
 struct monitor_shadow {
     agv_config_t config;
+    agv_ids_t ids;
     hal_t hal;
     session_t session;
     uint64_t next_ms; /* of the next tick */
-    bool is_heard[AGV_ID_MAX + 1u];
 };
 
 static void discard(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
     (void)ctx;
     (void)side;
     (void)frame;
-}
-
-/** It hears what a node hears: the protocol as configured, and in both ID sets (P1). */
-static void choose_ids(monitor_shadow_t *shadow) {
-    agv_ids_t ids;
-    agv_config_ids(&shadow->config, &ids);
-    for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
-        shadow->is_heard[ids.of[message]] = true;
-        shadow->is_heard[agv_message_id(message, AGV_ID_SET_HEADING)] = true;
-        shadow->is_heard[agv_message_id(message, AGV_ID_SET_TABLE)] = true;
-    }
 }
 
 monitor_shadow_t *monitor_shadow_new(const agv_config_t *config, session_observer_fn *fn, void *ctx, uint64_t t_us) {
@@ -44,7 +34,7 @@ monitor_shadow_t *monitor_shadow_new(const agv_config_t *config, session_observe
     shadow->config = *config;
     shadow->config.shadow = (uint16_t)AGV_SHADOW_ON;
     shadow->next_ms = t_ms + 1u;
-    choose_ids(shadow);
+    agv_config_ids(&shadow->config, &shadow->ids);
     sim_hal_init_direct(&shadow->hal, &hal, (config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? 2u : 1u, discard,
                         NULL);
     session_init(&shadow->session, &shadow->hal);
@@ -72,7 +62,7 @@ bool monitor_shadow_time(monitor_shadow_t *shadow, uint64_t t_us) {
 void monitor_shadow_frame(monitor_shadow_t *shadow, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
     const uint64_t t_ms = t_us / US_PER_MS;
     const bool is_error = (frame->flags & HAL_CAN_ERROR) != 0u;
-    if (!is_error && ((frame->id > AGV_ID_MAX) || !shadow->is_heard[frame->id])) {
+    if (!is_error && !message_id_is_heard(&shadow->ids, frame->id)) {
         return;
     }
     hal_can_frame_t received = *frame;

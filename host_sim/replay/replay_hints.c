@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "agv/recorder.h"
+#include "common/message_facts.h"
 #include "text/units.h"
 #include "why/why_words.h"
 
@@ -125,33 +126,33 @@ static bool hint_other_vehicle(text_t *text, const replay_clues_t *clues) {
     return true;
 }
 
+/** The identifiers of a node of which nothing was heard. @return how many; 0: something was */
+static size_t ids_of_silent(const replay_clues_t *clues, message_sender_t sender, uint16_t lacking[AGV_MSG_COUNT]) {
+    agv_ids_t ids;
+    size_t count = 0u;
+    agv_config_ids(clues->config, &ids);
+    for (uint32_t m = 0u; m < (uint32_t)AGV_MSG_COUNT; m++) {
+        if ((message_sender(m) == sender) && is_heard(clues->heard, ids.of[m])) {
+            return 0u;
+        }
+        if (message_sender(m) == sender) {
+            lacking[count] = ids.of[m];
+            count++;
+        }
+    }
+    return count;
+}
+
 /** All messages of a node are missing: VCU, EPS, AI computer. */
 static bool hint_node(text_t *text, const replay_clues_t *clues) {
-    static const agv_message_t eps[] = {AGV_MSG_STEERING_STATUS, AGV_MSG_EPS_STATUS, AGV_MSG_STEERING_POSITION};
-    static const agv_message_t vcu[] = {AGV_MSG_VEHICLE_STATUS, AGV_MSG_GEAR_STATUS, AGV_MSG_THROTTLE_STATUS,
-                                        AGV_MSG_WHEEL_SPEED};
-    static const agv_message_t ai[] = {AGV_MSG_TURN_SIGNAL_COMMAND, AGV_MSG_GEAR_COMMAND, AGV_MSG_THROTTLE_COMMAND,
-                                       AGV_MSG_STEERING_COMMAND};
     static const struct {
+        message_sender_t sender;
         const char *name;
-        const agv_message_t *messages;
-        size_t count;
-    } nodes[] = {{"EPS", eps, sizeof eps / sizeof eps[0]},
-                 {"VCU", vcu, sizeof vcu / sizeof vcu[0]},
-                 {"AI computer", ai, sizeof ai / sizeof ai[0]}};
-    agv_ids_t ids;
-    agv_config_ids(clues->config, &ids);
+    } nodes[] = {{MESSAGE_FROM_EPS, "EPS"}, {MESSAGE_FROM_VCU, "VCU"}, {MESSAGE_FROM_AI, "AI computer"}};
     for (size_t n = 0u; is_this_vehicle(clues) && (n < sizeof nodes / sizeof nodes[0]); n++) {
         uint16_t lacking[AGV_MSG_COUNT];
-        size_t count = 0u;
-        for (size_t i = 0u; i < nodes[n].count; i++) {
-            const uint16_t id = ids.of[nodes[n].messages[i]];
-            if (!is_heard(clues->heard, id)) {
-                lacking[count] = id;
-                count++;
-            }
-        }
-        if (count == nodes[n].count) {
+        const size_t count = ids_of_silent(clues, nodes[n].sender, lacking);
+        if (count > 0u) {
             add_ids(text, lacking, count);
             text_add(text, " never received: is the %s on this bus?", nodes[n].name);
             return true;

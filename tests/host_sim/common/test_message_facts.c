@@ -20,6 +20,17 @@ void test_senders(void) {
     TEST_ASSERT_EQUAL(MESSAGE_FROM_EPS, message_sender(AGV_MSG_STEERING_POSITION));
 }
 
+void test_identifiers_that_are_heard(void) {
+    agv_ids_t ids;
+    config.id_gear_command = 0x123;
+    agv_config_ids(&config, &ids);
+    TEST_ASSERT_TRUE_MESSAGE(message_id_is_heard(&ids, 0x123), "as configured");
+    TEST_ASSERT_TRUE_MESSAGE(message_id_is_heard(&ids, 0x43F), "the heading");
+    TEST_ASSERT_TRUE_MESSAGE(message_id_is_heard(&ids, 0x201), "the table");
+    TEST_ASSERT_FALSE_MESSAGE(message_id_is_heard(&ids, 0x7F0), "the status frame");
+    TEST_ASSERT_FALSE_MESSAGE(message_id_is_heard(&ids, 0x1FFFFFFF), "29 bits");
+}
+
 void test_counters_and_deadlines(void) {
     TEST_ASSERT_EQUAL_UINT8(7, message_counter_at(AGV_MSG_VEHICLE_STATUS));
     TEST_ASSERT_EQUAL_UINT8(0, message_counter_at(AGV_MSG_STEERING_STATUS));
