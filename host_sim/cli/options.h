@@ -110,9 +110,6 @@ void options_example_line(const option_example_t *example, const char *folder, c
 /** Print the help of a command. */
 void options_print_help(const option_syntax_t *syntax);
 
-/** Print a text from a column on, with further lines below it: 100 columns at most. */
-void options_print_from(int column, const char *text);
-
 /** The result. */
 typedef enum {
     OPTIONS_GO,   /**< run the command */

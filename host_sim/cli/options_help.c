@@ -5,17 +5,7 @@
 #include "common/shipped.h"
 #include "text/text.h"
 
-enum { HELP_COLUMN = 24, COLUMNS = 100 };
-
-void options_print_from(int column, const char *text) {
-    const size_t room = (size_t)(COLUMNS - column);
-    while (strlen(text) > room) {
-        const size_t length = text_break(text, room);
-        (void)printf("%.*s\n%*s", (int)length, text, column, "");
-        text = &text[length + ((text[length] == ' ') ? 1u : 0u)];
-    }
-    (void)printf("%s\n", text);
-}
+enum { HELP_COLUMN = 24 };
 
 static void print_row(const char *name, const char *value, const char *help, const char *more) {
     const int width = printf("  %s%s%s", name, (value != NULL) ? " " : "", (value != NULL) ? value : "");
@@ -24,7 +14,7 @@ static void print_row(const char *name, const char *value, const char *help, con
     /* A long one gets a line of its own. */
     (void)printf("%s%*s", (width >= HELP_COLUMN) ? "\n" : "",
                  (width >= HELP_COLUMN) ? HELP_COLUMN : HELP_COLUMN - width, "");
-    options_print_from(HELP_COLUMN, text.bytes);
+    text_print_from(HELP_COLUMN, text.bytes);
 }
 
 void options_example_line(const option_example_t *example, const char *folder, char *line, size_t size) {

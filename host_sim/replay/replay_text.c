@@ -7,6 +7,7 @@
 #include "agv/names.h"
 #include "agv/recorder.h"
 #include "replay/replay_hints.h"
+#include "text/civil.h"
 #include "text/text.h"
 #include "text/units.h"
 #include "ui/why_text.h"
@@ -36,12 +37,12 @@ static void add_head(text_t *text, const replay_text_t *replay) {
     }
     text_add(text, "%s", heard->more_names ? " and others" : "");
     if (why_text_has_clock(replay->first_us)) {
-        char from[WHY_TEXT_CLOCK_SIZE];
-        char to[WHY_TEXT_CLOCK_SIZE];
-        (void)why_text_clock(from, replay->first_us);
-        (void)why_text_clock(to, replay->first_us + replay->duration_us);
-        const bool same_day = strncmp(from, to, WHY_TEXT_DATE) == 0;
-        text_add(text, ", %s to %s", from, same_day ? &to[WHY_TEXT_DATE + 1] : to);
+        char from[CIVIL_LOCAL_SIZE];
+        char to[CIVIL_LOCAL_SIZE];
+        (void)civil_local(from, replay->first_us);
+        (void)civil_local(to, replay->first_us + replay->duration_us);
+        const bool same_day = strncmp(from, to, CIVIL_DATE_LENGTH) == 0;
+        text_add(text, ", %s to %s", from, same_day ? &to[CIVIL_DATE_LENGTH + 1] : to);
     }
 }
 
@@ -51,7 +52,7 @@ static void print_head(const replay_text_t *replay) {
     text_t copy;
     const char *name = text_one_line(&copy, replay->name);
     add_head(&text, replay);
-    if (strlen(name) + strlen(": ") + text.used <= (size_t)WHY_TEXT_COLUMNS) {
+    if (strlen(name) + strlen(": ") + text.used <= (size_t)TEXT_COLUMNS) {
         (void)printf("%s: %s\n", name, text.bytes);
     } else {
         text_t line = {.used = 0u};

@@ -4,7 +4,6 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 #include "agv/names.h"
 #include "common/json_build.h"
@@ -12,26 +11,16 @@
 #include "report/report_frames.h"
 #include "report/report_settings.h"
 #include "report/sentence.h"
+#include "text/civil.h"
 #include "text/units.h"
-
-enum { TIME_TEXT_SIZE = 96, YEAR_0 = 1900 };
 
 static json_t *time_or_null(uint64_t t_us) {
     return (t_us != WHY_NEVER) ? json_uint(t_us) : json_null();
 }
 
-/** The time of day as a clock on the wall shows it: "2026-11-20 10:32:04.100". */
 static json_t *clock_json(uint64_t clock_us) {
-    const time_t seconds = (time_t)(clock_us / US_PER_S);
-    struct tm local;
-    char text[TIME_TEXT_SIZE];
-    if ((clock_us == 0u) || (localtime_r(&seconds, &local) == NULL)) {
-        return json_null();
-    }
-    (void)snprintf(text, sizeof text, "%04d-%02d-%02d %02d:%02d:%02d.%03u", local.tm_year + YEAR_0, local.tm_mon + 1,
-                   local.tm_mday, local.tm_hour, local.tm_min, local.tm_sec,
-                   (unsigned)(clock_us % US_PER_S / US_PER_MS));
-    return json_string(text);
+    char text[CIVIL_LOCAL_SIZE];
+    return (clock_us != 0u) ? json_string(civil_local(text, clock_us)) : json_null();
 }
 
 static json_t *trip_json(const report_page_t *page, const why_t *why, const series_t *series, size_t index) {

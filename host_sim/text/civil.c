@@ -1,6 +1,11 @@
 #include "text/civil.h"
 
-enum { YEAR_MIN = 1970, YEAR_MAX = 9999, MARCH = 3, MONTHS = 12, HOURS = 24, SIXTY = 60 };
+#include <stdio.h>
+#include <time.h>
+
+#include "text/units.h"
+
+enum { YEAR_MIN = 1970, YEAR_MAX = 9999, YEAR_0 = 1900, MARCH = 3, MONTHS = 12, HOURS = 24, SIXTY = 60 };
 enum { DAYS_PER_YEAR = 365, DAYS_PER_5_MONTHS = 153, DAYS_TO_1970 = 719468, LEAP = 4, CENTURY = 100, ERA = 400 };
 
 static bool is_leap(uint32_t year) {
@@ -29,4 +34,16 @@ bool civil_seconds(const civil_t *civil, uint64_t *seconds) {
     const uint64_t days = days_since_1970(civil->year, civil->month, civil->day);
     *seconds = (((((days * HOURS) + civil->hour) * SIXTY) + civil->minute) * SIXTY) + civil->second;
     return true;
+}
+
+const char *civil_local(char text[CIVIL_LOCAL_SIZE], uint64_t at_us) {
+    const time_t seconds = (time_t)(at_us / US_PER_S);
+    struct tm local;
+    text[0] = '\0';
+    if (localtime_r(&seconds, &local) != NULL) {
+        (void)snprintf(text, CIVIL_LOCAL_SIZE, "%04d-%02d-%02d %02d:%02d:%02d.%03u", local.tm_year + YEAR_0,
+                       local.tm_mon + 1, local.tm_mday, local.tm_hour, local.tm_min, local.tm_sec,
+                       (unsigned)(at_us % US_PER_S / US_PER_MS));
+    }
+    return text;
 }

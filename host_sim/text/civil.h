@@ -1,6 +1,6 @@
 /**
  * @file civil.h
- * Dates as people write them, as seconds since 1970.
+ * Dates and times of day as people write them.
  */
 #ifndef HOST_SIM_CIVIL_H
 #define HOST_SIM_CIVIL_H
@@ -20,5 +20,11 @@ typedef struct {
 
 /** @param[out] seconds since 1970-01-01 00:00:00 @return false: there is no such date or time of day */
 bool civil_seconds(const civil_t *civil, uint64_t *seconds);
+
+/** Size of a local time in print, and length of the date at its beginning. */
+enum { CIVIL_LOCAL_SIZE = 40, CIVIL_DATE_LENGTH = 10 };
+
+/** Microseconds since 1970 as local date and time of day: "2026-11-20 10:33:06.209"; "": there is none. @return text */
+const char *civil_local(char text[CIVIL_LOCAL_SIZE], uint64_t at_us);
 
 #endif

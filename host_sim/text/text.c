@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 
 void text_clear(text_t *text) {
     text->used = 0u;
@@ -102,4 +103,14 @@ size_t text_break(const char *text, size_t room) {
         length--;
     }
     return (length > 0u) ? length : room;
+}
+
+void text_print_from(int column, const char *text) {
+    const size_t room = (size_t)(TEXT_COLUMNS - column);
+    while (strlen(text) > room) {
+        const size_t length = text_break(text, room);
+        (void)printf("%.*s\n%*s", (int)length, text, column, "");
+        text = &text[length + ((text[length] == ' ') ? 1u : 0u)];
+    }
+    (void)printf("%s\n", text);
 }

@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #define TEXT_MAX 8192u
+#define TEXT_COLUMNS 100 /**< of a line in print */
 
 /** All zero: empty. A piece that finds no room is left out. */
 typedef struct {
@@ -38,6 +39,9 @@ void text_mask(char *text);
 
 /** A copy of a text from outside, such as the name of a file, as one line. @return the bytes of @p copy */
 const char *text_one_line(text_t *copy, const char *from);
+
+/** Print a text on standard output from a column on, with further lines below it: TEXT_COLUMNS at most. */
+void text_print_from(int column, const char *text);
 
 /** Where to break a text that is longer than @p room: at a blank if there is one. @return length of what fits */
 size_t text_break(const char *text, size_t room);

@@ -3,9 +3,9 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 #include "agv/names.h"
+#include "text/civil.h"
 #include "text/text.h"
 #include "text/units.h"
 #include "text/words.h"
@@ -17,40 +17,23 @@ enum { TRIPS_SHOWN = 8, US_PER_10_MS = 10000 };
 #define CLOCK_FROM_S 946684800u
 
 void why_text_line(const char *label, int width, const char *text) {
-    const size_t room = (size_t)(WHY_TEXT_COLUMNS - width);
     (void)printf("%-*s", width, label);
-    while (strlen(text) > room) {
-        const size_t length = text_break(text, room);
-        (void)printf("%.*s\n%*s", (int)length, text, width, "");
-        text = &text[length + ((text[length] == ' ') ? 1u : 0u)];
-    }
-    (void)printf("%s\n", text);
+    text_print_from(width, text);
 }
 
 bool why_text_has_clock(uint64_t first_us) {
     return first_us / US_PER_S >= (uint64_t)CLOCK_FROM_S;
 }
 
-const char *why_text_clock(char text[WHY_TEXT_CLOCK_SIZE], uint64_t at_us) {
-    const time_t seconds = (time_t)(at_us / US_PER_S);
-    struct tm parts;
-    text[0] = '\0';
-    if (localtime_r(&seconds, &parts) != NULL) {
-        const size_t used = strftime(text, WHY_TEXT_CLOCK_SIZE, "%Y-%m-%d %H:%M:%S", &parts);
-        (void)snprintf(&text[used], WHY_TEXT_CLOCK_SIZE - used, ".%03" PRIu64, (at_us % US_PER_S) / US_PER_MS);
-    }
-    return text;
-}
-
 /** The time of day, with its date where that is not the one of the first frame. */
 static void add_time_of_day(text_t *text, const why_text_t *shown, uint64_t t_us) {
-    char first[WHY_TEXT_CLOCK_SIZE];
-    char clock[WHY_TEXT_CLOCK_SIZE] = "";
+    char first[CIVIL_LOCAL_SIZE];
+    char clock[CIVIL_LOCAL_SIZE] = "";
     if (why_text_has_clock(shown->first_us)) {
-        (void)why_text_clock(first, shown->first_us);
-        (void)why_text_clock(clock, shown->first_us + t_us);
-        const bool same_day = strncmp(first, clock, WHY_TEXT_DATE) == 0;
-        text_add(text, " (%s)", same_day ? &clock[WHY_TEXT_DATE + 1] : clock);
+        (void)civil_local(first, shown->first_us);
+        (void)civil_local(clock, shown->first_us + t_us);
+        const bool same_day = strncmp(first, clock, CIVIL_DATE_LENGTH) == 0;
+        text_add(text, " (%s)", same_day ? &clock[CIVIL_DATE_LENGTH + 1] : clock);
     }
 }
 

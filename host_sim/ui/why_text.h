@@ -10,7 +10,7 @@
 
 #include "why/why.h"
 
-enum { WHY_TEXT_COLUMNS = 100, WHY_TEXT_LABEL = 12, WHY_TEXT_CLOCK_SIZE = 40, WHY_TEXT_DATE = 10 };
+enum { WHY_TEXT_LABEL = 12 };
 
 /** What is printed. */
 typedef struct {
@@ -25,9 +25,6 @@ void why_text_line(const char *label, int width, const char *text);
 
 /** Whether a stamp is a time of day: not before the year 2000. */
 bool why_text_has_clock(uint64_t first_us);
-
-/** A time as local date and time of day: "2026-11-20 10:33:06.209". @return text */
-const char *why_text_clock(char text[WHY_TEXT_CLOCK_SIZE], uint64_t at_us);
 
 /** Print how long it was supervised, and in which states. */
 void why_text_supervised(const why_t *why);

@@ -6,6 +6,7 @@
 
 #include "cli/exit_status.h"
 #include "text/suggest.h"
+#include "text/text.h"
 
 enum { WORDS_SIZE = 256 };
 
@@ -82,7 +83,7 @@ void command_print_help(void) {
                  "\n"
                  "Commands:\n");
     for (size_t i = 0u; i < COMMAND_COUNT; i++) {
-        options_print_from(printf("  %-11s ", COMMANDS[i].name), COMMANDS[i].help);
+        text_print_from(printf("  %-11s ", COMMANDS[i].name), COMMANDS[i].help);
     }
     (void)printf("\n"
                  "  -h, --help     print this help; after a command: its options (also host_sim help COMMAND)\n"
@@ -92,6 +93,6 @@ void command_print_help(void) {
                  "\n"
                  "Exit status:\n");
     for (size_t i = 0u; i < EXIT_STATUS_COUNT; i++) {
-        options_print_from(printf("  %d  ", (int)EXIT_STATUSES[i].status), EXIT_STATUSES[i].means);
+        text_print_from(printf("  %d  ", (int)EXIT_STATUSES[i].status), EXIT_STATUSES[i].means);
     }
 }

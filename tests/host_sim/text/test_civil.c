@@ -1,6 +1,9 @@
 /* Dates as seconds since 1970; the expected values are those of `date -u -d '...' +%s`. */
 #include "text/civil.h"
 
+#include <stdlib.h>
+#include <time.h>
+
 #include "unity.h"
 
 static void check(civil_t civil, uint64_t expected) {
@@ -33,4 +36,12 @@ void test_what_is_no_date(void) {
     refuse((civil_t){2023, 4, 1, 24, 0, 0});
     refuse((civil_t){2023, 4, 1, 0, 60, 0});
     refuse((civil_t){2023, 4, 1, 0, 0, 61});
+}
+
+void test_local_time(void) {
+    char text[CIVIL_LOCAL_SIZE];
+    (void)setenv("TZ", "UTC-2", 1); /* two hours east */
+    tzset();
+    TEST_ASSERT_EQUAL_STRING("2023-11-15 00:13:20.123", civil_local(text, 1700000000123999u));
+    TEST_ASSERT_EQUAL_STRING("1970-01-01 02:00:00.000", civil_local(text, 0));
 }
