@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "analysis/analysis.h"
@@ -86,12 +85,6 @@ static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame
     if (live->analysis != NULL) {
         analysis_sent(live->analysis, side, frame, analysed_us(live, at_us));
     }
-}
-
-static uint64_t time_of_day_us(void) {
-    struct timespec now = {0};
-    (void)clock_gettime(CLOCK_REALTIME, &now);
-    return ((uint64_t)now.tv_sec * US_PER_S) + ((uint64_t)now.tv_nsec / NS_PER_US);
 }
 
 static bool open_outputs(live_t *live) {

@@ -13,8 +13,6 @@
  * bound.
  */
 
-#define EXTENDED_ID_MAX 0x1FFFFFFFu
-#define STANDARD_ID_MAX 0x7FFu
 #define SECONDS_DIGITS_MAX 12u
 #define DATA_MAX 8u
 #define FD_DATA_MAX 64u
@@ -104,7 +102,7 @@ static const char *parse_id(const char **cursor, hal_can_frame_t *frame) {
     *cursor = &at[1];
     if (count == 3u) {
         frame->id = id;
-        return (id <= STANDARD_ID_MAX) ? NULL : "the identifier is above 7FF";
+        return (id <= CANDUMP_ID_MAX) ? NULL : "the identifier is above 7FF";
     }
     if (count != 8u) {
         return (count == 5u) ? "CAN XL frames are not supported" : "the identifier has neither 3 nor 8 digits";
@@ -112,7 +110,7 @@ static const char *parse_id(const char **cursor, hal_can_frame_t *frame) {
     bool is_error = (id & CANDUMP_ERROR_FLAG) != 0u;
     frame->flags = is_error ? HAL_CAN_ERROR : HAL_CAN_EXTENDED;
     frame->id = is_error ? (id & ~CANDUMP_ERROR_FLAG) : id;
-    return (frame->id <= EXTENDED_ID_MAX) ? NULL : "the identifier is above 1FFFFFFF";
+    return (frame->id <= CANDUMP_EXTENDED_ID_MAX) ? NULL : "the identifier is above 1FFFFFFF";
 }
 
 /** Skip a raw DLC, "_9" to "_F". */

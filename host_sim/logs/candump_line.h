@@ -20,11 +20,13 @@
 
 #include "hal/can.h"
 
-#define CANDUMP_INTERFACE_MAX 15u         /**< characters of an interface's name */
-#define CANDUMP_LINE_MAX 255u             /**< characters of a line; the longest valid one has fewer */
-#define CANDUMP_ID_SIZE 9u                /**< of the text of an identifier */
-#define CANDUMP_WRITE_MAX 80u             /**< more than candump_write() ever writes */
-#define CANDUMP_GAP_MAX_US 8640000000000u /**< the longest that a log may be silent: 100 days */
+#define CANDUMP_ID_MAX 0x7FFu               /**< of 11 bits */
+#define CANDUMP_EXTENDED_ID_MAX 0x1FFFFFFFu /**< of 29 bits */
+#define CANDUMP_INTERFACE_MAX 15u           /**< characters of an interface's name */
+#define CANDUMP_LINE_MAX 255u               /**< characters of a line; the longest valid one has fewer */
+#define CANDUMP_ID_SIZE 9u                  /**< of the text of an identifier */
+#define CANDUMP_WRITE_MAX 80u               /**< more than candump_write() ever writes */
+#define CANDUMP_GAP_MAX_US 8640000000000u   /**< the longest that a log may be silent: 100 days */
 
 /** What a parser returns for a line that is in order but has no frame: a header, a comment, another event. */
 extern const char LOG_NO_FRAME[];

@@ -10,7 +10,6 @@
 enum { HEX = 16, DECIMAL = 10, ID_DIGITS = 3, LONG_ID_DIGITS = 8, DATA_MAX = 8, FD_DATA_MAX = 64, BYTE_MAX = 255 };
 enum { DATE_LENGTH = 10, TIME_LENGTH = 8, FIRST_LINES = 200, BACKWARD_MAX = 40 };
 
-#define STANDARD_ID_MAX 0x7FFu
 #define LONG_ID_MAX 0x3FFFFFFFu
 
 /** Read part of a word as a decimal number. */
@@ -78,7 +77,7 @@ static const char *parse_id(const char **cursor, const char *end, hal_can_frame_
     }
     if (token.length == (size_t)ID_DIGITS) {
         frame->id = id;
-        return (id <= STANDARD_ID_MAX) ? NULL : "the identifier is above 7FF";
+        return (id <= CANDUMP_ID_MAX) ? NULL : "the identifier is above 7FF";
     }
     const bool is_error = (id & CANDUMP_ERROR_FLAG) != 0u;
     frame->flags = is_error ? HAL_CAN_ERROR : HAL_CAN_EXTENDED;

@@ -9,9 +9,6 @@
 enum { HEX = 16, DECIMAL = 10, DATA_MAX = 8, FD_DATA_MAX = 64, BYTE_MAX = 255, CHANNEL_MAX = 255, DLC_MAX = 15 };
 enum { MONTHS = 12, MONTH_LENGTH = 3, NOON = 12, CONTROLLER_STATE_AT = 1 };
 
-#define STANDARD_ID_MAX 0x7FFu
-#define EXTENDED_ID_MAX 0x1FFFFFFFu
-
 /** The rest of a line. */
 typedef struct {
     const char *at;
@@ -137,11 +134,11 @@ static const char *take_id(const vector_asc_t *asc, log_token_t token, hal_can_f
     const uint32_t base = asc->is_decimal ? DECIMAL : HEX;
     const bool is_extended = (token.length > 1u) && (token.at[token.length - 1u] == 'x');
     token.length -= is_extended ? 1u : 0u;
-    if (!log_token_number(token, base, EXTENDED_ID_MAX, &frame->id)) {
+    if (!log_token_number(token, base, CANDUMP_EXTENDED_ID_MAX, &frame->id)) {
         return "the identifier is not a number: symbolic names cannot be read";
     }
     frame->flags |= is_extended ? HAL_CAN_EXTENDED : 0u;
-    return (is_extended || (frame->id <= STANDARD_ID_MAX)) ? NULL : "the identifier is above 7FF";
+    return (is_extended || (frame->id <= CANDUMP_ID_MAX)) ? NULL : "the identifier is above 7FF";
 }
 
 static const char *take_bytes(const vector_asc_t *asc, rest_t *rest, hal_can_frame_t *frame) {
@@ -236,8 +233,8 @@ static const char *take_channel_event(vector_asc_t *asc, log_token_t channel, re
     }
     if (!log_token_is(direction, "Rx") && !log_token_is(direction, "Tx")) {
         uint32_t number = 0u;
-        const bool is_cut =
-            (direction.length < 2u) && ((id.length == 0u) || log_token_number(id, HEX, EXTENDED_ID_MAX, &number));
+        const bool is_cut = (direction.length < 2u) &&
+                            ((id.length == 0u) || log_token_number(id, HEX, CANDUMP_EXTENDED_ID_MAX, &number));
         return is_cut ? "the frame is cut off" : LOG_NO_FRAME;
     }
     const char *wrong = take_channel(asc, channel, record);

@@ -1,7 +1,6 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 #include "common/interrupt.h"
 #include "hal_linux/linux_can.h"
@@ -20,12 +19,6 @@ typedef struct {
     uint32_t lost[HAL_CAN_SIDES];
     linux_loop_t loop;
 } live_t;
-
-static uint64_t realtime_us(void) {
-    struct timespec now;
-    (void)clock_gettime(CLOCK_REALTIME, &now);
-    return ((uint64_t)now.tv_sec * US_PER_S) + ((uint64_t)now.tv_nsec / NS_PER_US);
-}
 
 static bool open_sockets(live_t *live) {
     const linux_can_options_t options = {.error_frames = true, .receive_size = RECEIVE_BUFFER_BYTES};
@@ -54,7 +47,7 @@ static bool receive(live_t *live, hal_can_side_t side) {
         switch (linux_can_read(&live->sockets[side], &record)) {
         case LINUX_CAN_RECORD:
             observation_frame(live->observation, side, &record.frame,
-                              (record.stamp_us != 0u) ? record.stamp_us : realtime_us());
+                              (record.stamp_us != 0u) ? record.stamp_us : time_of_day_us());
             live->source->has_ai_side = live->source->has_ai_side || (side == HAL_CAN_AI);
             live->lost[side] = record.lost;
             break;
@@ -104,7 +97,7 @@ static bool run(live_t *live) {
     }
     (void)snprintf(live->source->name, sizeof live->source->name, "%s", live->request->bus.interfaces[HAL_CAN_VEHICLE]);
     live->observation->lost = (uint64_t)live->lost[HAL_CAN_VEHICLE] + live->lost[HAL_CAN_AI];
-    observation_end(live->observation, realtime_us());
+    observation_end(live->observation, time_of_day_us());
     return true;
 }
 

@@ -1,6 +1,6 @@
 /**
  * @file units.h
- * Units of time, and the clock that measures how long something takes.
+ * Units of time, the clock that measures how long something takes, and that of the day.
  */
 #ifndef HOST_SIM_UNITS_H
 #define HOST_SIM_UNITS_H
@@ -21,5 +21,8 @@ static inline double s_of_us(uint64_t us) {
 
 /** Milliseconds of a clock that never goes back. */
 uint64_t monotonic_ms(void);
+
+/** The time of day: microseconds since 1970. */
+uint64_t time_of_day_us(void);
 
 #endif
