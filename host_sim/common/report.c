@@ -46,6 +46,10 @@ void note(const char *format, ...) {
     va_end(arguments);
 }
 
+const char *report_input_name(const char *path) {
+    return (strcmp(path, "-") == 0) ? "standard input" : path;
+}
+
 bool report_stdout(void) {
     /* An error of an earlier write is remembered by the stream, its errno is not. */
     bool failed = ferror(stdout) != 0;

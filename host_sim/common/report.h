@@ -28,6 +28,9 @@ bool report_at(const char *file, size_t line, const char *format, ...) __attribu
 /** Like report(), for information that is not an error. */
 void note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/** How messages call a file that is read: "standard input" for "-". */
+const char *report_input_name(const char *path);
+
 /**
  * Flush standard output and see whether everything arrived.
  * @return false: it did not (full disk, closed pipe); that was reported.

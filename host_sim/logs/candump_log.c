@@ -19,7 +19,7 @@
 
 bool candump_open(candump_log_t *log, const char *path, bool skip_bad) {
     bool is_stdin = strcmp(path, "-") == 0;
-    log->name = is_stdin ? "standard input" : path;
+    log->name = report_input_name(path);
     log->line = 0u;
     log->skipped = 0u;
     log->skip_bad = skip_bad;

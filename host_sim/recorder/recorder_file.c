@@ -207,12 +207,8 @@ static bool take_file(recorder_events_t *events, const char *text, size_t size) 
     return (events->count > 0u) || take_bytes(events, (const uint8_t *)text, size);
 }
 
-const char *recorder_file_name(const char *path) {
-    return (strcmp(path, "-") == 0) ? "standard input" : path;
-}
-
 bool recorder_file_read(const char *path, recorder_events_t *events) {
-    const char *name = recorder_file_name(path);
+    const char *name = report_input_name(path);
     char *text = NULL;
     const ssize_t size = read_all(path, name, &text);
     bool good = (size >= 0) && take_file(events, text, (size_t)size);

@@ -25,9 +25,6 @@ typedef struct {
     char device[RECORDER_DEVICE_SIZE]; /**< version and configuration of the device; "": not known */
 } recorder_events_t;
 
-/** How messages call a file: "standard input" for "-". */
-const char *recorder_file_name(const char *path);
-
 /** Read a file; "-" = standard input. @return false: it cannot be read, or has no event; was reported */
 bool recorder_file_read(const char *path, recorder_events_t *events);
 

@@ -54,8 +54,8 @@ static bool choose_run(work_t *work) {
             /* another run */
         }
     }
-    return found || report("--run: %s has no event of run %" PRIu64, recorder_file_name(work->request->path),
-                           work->request->run);
+    return found ||
+           report("--run: %s has no event of run %" PRIu64, report_input_name(work->request->path), work->request->run);
 }
 
 /** Run numbers wrap: the events of the last run with this number follow each other. */
@@ -102,7 +102,7 @@ static void print_device(const work_t *work) {
 static void print_head(const work_t *work) {
     const agv_event_t *first = &work->events.events[work->first];
     text_t name;
-    (void)printf("%s: %zu event%s", text_one_line(&name, recorder_file_name(work->request->path)), work->events.count,
+    (void)printf("%s: %zu event%s", text_one_line(&name, report_input_name(work->request->path)), work->events.count,
                  words_plural(work->events.count));
     if (work->events.damaged > 0u) {
         (void)printf(" (%zu more %s damaged)", work->events.damaged, (work->events.damaged == 1u) ? "is" : "are");
@@ -157,7 +157,7 @@ static void print_text(work_t *work) {
 static bool analyse(work_t *work) {
     const recorder_request_t *request = work->request;
     const analysis_request_t analysed = {.config = &request->config,
-                                         .log = recorder_file_name(request->path),
+                                         .log = report_input_name(request->path),
                                          .files = request->analysis,
                                          .is_recorder = true};
     work->analysis = analysis_new(&analysed);

@@ -289,7 +289,7 @@ static bool check_request(const replay_request_t *request) {
 static bool make_analysis(replay_t *replay) {
     analysis_request_t request = {
         .config = &replay->request->config, .files = replay->request->analysis, .is_recording = true};
-    request.log = (strcmp(replay->request->log, "-") == 0) ? "standard input" : replay->request->log;
+    request.log = report_input_name(replay->request->log);
     replay->analysis = analysis_new(&request);
     return replay->analysis != NULL;
 }
