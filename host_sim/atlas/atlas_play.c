@@ -1,7 +1,6 @@
 #include "atlas/atlas_play.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "agv/recorder.h"
 #include "agv/state.h"
@@ -11,12 +10,6 @@
 #include "text/units.h"
 
 enum { STANDS_MM_S = 50 };
-
-void atlas_play_init(atlas_play_t *play) {
-    memset(play, 0, sizeof *play);
-    play->options = (scenario_options_t){.topology = -1, .id_set = -1};
-    agv_config_defaults(&play->options.config);
-}
 
 static scenario_testbed_view_t look(const atlas_play_t *play) {
     scenario_testbed_view_t view;
@@ -110,7 +103,7 @@ bool atlas_play(atlas_play_t *play, const atlas_case_t *pair) {
     if (play->text.full) {
         return report("a case of the atlas is too long for a scenario");
     }
-    if (!scenario_read_text(&play->scenario, "a case of the atlas", play->text.bytes, &play->options) ||
+    if (!scenario_read_text(&play->scenario, "a case of the atlas", play->text.bytes, NULL) ||
         !scenario_testbed_init(&play->testbed, &play->scenario)) {
         return false;
     }

@@ -27,7 +27,7 @@ typedef struct {
     hazard_kind_t hazard;
 } atlas_outcome_t;
 
-/** What it takes to play; large: on the heap. Start from atlas_play_init(). */
+/** What it takes to play; large: on the heap. All zero at the start. */
 typedef struct {
     atlas_outcome_t outcome;
     const atlas_case_t *pair;
@@ -35,14 +35,11 @@ typedef struct {
     bool tripped;
     bool was_open;
     bool was_moving;
-    scenario_options_t options;
     scenario_t scenario;
     scenario_testbed_t testbed;
     hazard_t hazard;
     text_t text;
 } atlas_play_t;
-
-void atlas_play_init(atlas_play_t *play);
 
 /** Play a case. @return false: it is no scenario; was reported */
 bool atlas_play(atlas_play_t *play, const atlas_case_t *pair);

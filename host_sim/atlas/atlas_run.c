@@ -195,7 +195,6 @@ status_t atlas_run(const atlas_request_t *request) {
         return STATUS_UNUSABLE;
     }
     atlas->request = request;
-    atlas_play_init(&atlas->play);
     const status_t status = run_shard(atlas);
     output_discard(&atlas->results);
     free(atlas);

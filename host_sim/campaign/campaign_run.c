@@ -19,7 +19,6 @@ typedef struct {
     campaign_plan_t plan;
     campaign_check_t check;
     text_t text;
-    scenario_options_t options;
     scenario_t scenario;
     scenario_testbed_t testbed;
     campaign_samples_t samples;
@@ -39,7 +38,7 @@ static bool read_plan(campaign_t *campaign) {
     if (campaign->plan.head.full || text->full) {
         return report("run %" PRIu64 ": its scenario is too long", campaign->plan.run);
     }
-    return scenario_read_text(&campaign->scenario, "a run of the campaign", text->bytes, &campaign->options);
+    return scenario_read_text(&campaign->scenario, "a run of the campaign", text->bytes, NULL);
 }
 
 static bool after_tick(void *ctx, uint64_t t_ms) {
@@ -199,8 +198,6 @@ status_t campaign_run(const campaign_request_t *request) {
         return STATUS_UNUSABLE;
     }
     campaign->request = request;
-    campaign->options = (scenario_options_t){.topology = -1, .id_set = -1};
-    agv_config_defaults(&campaign->options.config);
     const status_t status = request->shows_one ? show_one(campaign) : run_campaign(campaign);
     output_discard(&campaign->results);
     output_discard(&campaign->why_lines);

@@ -11,12 +11,6 @@ enum { OPEN_MS = 700, STANDS_MS = 1000, HASH_START = 5381, HASH_FACTOR = 33 };
 /** Kinds of features. */
 enum { OF_STATE = 1, OF_FAULT, OF_CLOSENESS, OF_SPEED };
 
-void hunt_play_init(hunt_play_t *play) {
-    memset(play, 0, sizeof *play);
-    play->options = (scenario_options_t){.topology = -1, .id_set = -1};
-    agv_config_defaults(&play->options.config);
-}
-
 static void note_feature(hunt_play_t *play, uint32_t kind, uint32_t a, uint32_t b, uint32_t c) {
     const uint32_t parts[] = {kind, a, b, c};
     uint32_t hash = HASH_START;
@@ -119,7 +113,7 @@ bool hunt_play(hunt_play_t *play, const hunt_program_t *program) {
     if (play->text.full) {
         return report("the scenario of a run is too long");
     }
-    if (!scenario_read_text(&play->scenario, "a run of the hunt", play->text.bytes, &play->options)) {
+    if (!scenario_read_text(&play->scenario, "a run of the hunt", play->text.bytes, NULL)) {
         return false;
     }
     if (!scenario_testbed_init(&play->testbed, &play->scenario)) {

@@ -10,10 +10,9 @@
 
 enum { HUNT_FEATURES = 16384, HUNT_FEATURE_BYTES = HUNT_FEATURES / 8 };
 
-/** All that one run needs; some 500 KiB: allocate it. */
+/** All that one run needs; some 500 KiB: allocate it, all zero. */
 typedef struct {
     text_t text; /**< the scenario as it was played */
-    scenario_options_t options;
     scenario_t scenario;
     scenario_testbed_t testbed;
     hazard_t hazard;
@@ -22,8 +21,6 @@ typedef struct {
     uint32_t last_step_ms; /**< the last step, repeated ones not counted */
     uint32_t quiet_ms;     /**< until then a hazard was possible */
 } hunt_play_t;
-
-void hunt_play_init(hunt_play_t *play);
 
 /** Play it to its end or to the first hazard. @return false: not a valid scenario; reported */
 bool hunt_play(hunt_play_t *play, const hunt_program_t *program);

@@ -242,7 +242,6 @@ status_t hunt_run(const hunt_request_t *request) {
         return STATUS_UNUSABLE;
     }
     hunt->request = request;
-    hunt_play_init(&hunt->play);
     const status_t status = run_until_end(hunt);
     output_discard(&hunt->file);
     free(hunt);

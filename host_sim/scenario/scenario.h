@@ -239,6 +239,7 @@ typedef struct {
 /**
  * Read a scenario file.
  * @param scenario some 100 KiB: not for the stack
+ * @param options NULL: the default configuration, and the command line sets nothing
  * @return false: it makes no sense; was reported with file and line.
  */
 bool scenario_read(scenario_t *scenario, const char *file, const scenario_options_t *options);

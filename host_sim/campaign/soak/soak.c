@@ -35,10 +35,8 @@ static uint32_t add_steps(soak_t *soak, const char *words, uint32_t number) {
 
 /** All steps of all rows are read as those of one scenario, in their order. */
 static bool read_rows(soak_t *soak) {
-    scenario_options_t options = {.topology = -1, .id_set = -1};
     uint32_t number = 0u;
 
-    agv_config_defaults(&options.config);
     text_add(&soak->text, "name: soak\nshows: [TIM-1]\ntopology: %s\nid_set: %s\nclock_start_ms: %" PRIu32 "\n",
              soak->gateway ? "gateway" : "shared", soak->table_ids ? "table" : "heading", (uint32_t)soak->start_ms);
     text_add(&soak->text, "config: {status_frame_id: %u, status_frame_period_ms: %u}\n", SOAK_STATUS_ID,
@@ -53,7 +51,7 @@ static bool read_rows(soak_t *soak) {
     }
     text_add(&soak->text, "expect: {states: []}\n");
     return soak->text.full ? report("the soak scenario is too long")
-                           : scenario_read_text(&soak->scenario, "the soak", soak->text.bytes, &options);
+                           : scenario_read_text(&soak->scenario, "the soak", soak->text.bytes, NULL);
 }
 
 static void do_steps(soak_t *soak, uint32_t from, uint32_t to) {

@@ -203,9 +203,12 @@ const yaml_shape_t SCENARIO_SHAPE = {YAML_MAP_SHAPE(TOP)};
 
 static void preset(scenario_t *scenario, const scenario_options_t *options) {
     memset(scenario, 0, sizeof *scenario);
-    scenario->config = options->config;
-    scenario->config.topology = (options->topology >= 0) ? (uint16_t)options->topology : options->config.topology;
-    scenario->config.id_set = (options->id_set >= 0) ? (uint16_t)options->id_set : options->config.id_set;
+    agv_config_defaults(&scenario->config);
+    if (options != NULL) {
+        scenario->config = options->config;
+        scenario->config.topology = (options->topology >= 0) ? (uint16_t)options->topology : options->config.topology;
+        scenario->config.id_set = (options->id_set >= 0) ? (uint16_t)options->id_set : options->config.id_set;
+    }
     scenario->bitrate = SCENARIO_DEFAULT_BITRATE;
     scenario->reset_cause = HAL_RESET_POWER_ON;
     vehicle_defaults(&scenario->vehicle);
@@ -293,7 +296,7 @@ static bool read_loaded(scenario_t *scenario, const char *file, yaml_document_t 
     const bool good = read_document(scenario, document, file);
 
     yaml_document_delete(document);
-    return good && agrees(scenario, file, options) &&
+    return good && ((options == NULL) || agrees(scenario, file, options)) &&
            (scenario->config_unchecked || config_check(&scenario->config, &scenario->lines));
 }
 

@@ -8,9 +8,8 @@
 static atlas_play_t *play;
 
 void setUp(void) {
-    play = malloc(sizeof *play);
+    play = calloc(1u, sizeof *play);
     TEST_ASSERT_NOT_NULL(play);
-    atlas_play_init(play);
 }
 
 void tearDown(void) {

@@ -14,13 +14,12 @@ static const campaign_causes_t NEWLY_ENGAGED = {.newly_engaged = true};
 static campaign_plan_t plan;
 static campaign_plan_t other;
 static scenario_t scenario;
-static scenario_options_t options;
+static agv_config_t config;
 static text_t text;
 
 void setUp(void) {
     scratch_open();
-    options = (scenario_options_t){.topology = -1, .id_set = -1};
-    agv_config_defaults(&options.config);
+    agv_config_defaults(&config);
 }
 
 void tearDown(void) {
@@ -30,7 +29,7 @@ void tearDown(void) {
 static bool is_read(void) {
     text.used = 0u;
     text_add(&text, "%sexpect: {states: []}\n", plan.head.bytes);
-    return !plan.head.full && !text.full && scenario_read_text(&scenario, "run", text.bytes, &options);
+    return !plan.head.full && !text.full && scenario_read_text(&scenario, "run", text.bytes, NULL);
 }
 
 void test_every_run_of_every_fault_is_a_scenario(void) {
@@ -141,7 +140,7 @@ void test_decision_times_worked_out_by_hand(void) {
         {AGV_FAULT_COMMAND_TOO_FAST, 385u},
     };
     for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
-        TEST_ASSERT_EQUAL_MESSAGE(rows[i].ms, campaign_decision_ms(campaign_row(rows[i].fault), &options.config),
+        TEST_ASSERT_EQUAL_MESSAGE(rows[i].ms, campaign_decision_ms(campaign_row(rows[i].fault), &config),
                                   agv_fault_name(rows[i].fault));
     }
 }
@@ -163,10 +162,10 @@ void test_decision_times_after_an_engagement_worked_out_by_hand(void) {
         {AGV_FAULT_AUTOPILOT_OFF_IGNORED, 10u + 500u + 100u + 1000u + 2u},
     };
     for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
-        TEST_ASSERT_EQUAL_MESSAGE(rows[i].ms,
-                                  campaign_engaged_decision_ms(campaign_row(rows[i].fault),
-                                                               campaign_engagement(rows[i].fault), &options.config),
-                                  agv_fault_name(rows[i].fault));
+        TEST_ASSERT_EQUAL_MESSAGE(
+            rows[i].ms,
+            campaign_engaged_decision_ms(campaign_row(rows[i].fault), campaign_engagement(rows[i].fault), &config),
+            agv_fault_name(rows[i].fault));
     }
     TEST_ASSERT_NULL(campaign_engagement(AGV_FAULT_VCU_HEARTBEAT_LOST));
     TEST_ASSERT_NULL(campaign_engagement(AGV_FAULT_GEAR_DEVIATION)); /* the gateway passes no 168h then: not judged */

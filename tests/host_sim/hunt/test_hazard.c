@@ -147,12 +147,9 @@ static bool after_tick(void *ctx, uint64_t t_ms) {
 /** Play steps with a stub supervisor. @return which hazard it was */
 static hazard_kind_t play(const stub_t *supervisor, const char *steps) {
     static const scenario_watch_t passing = {.on_frame = on_frame};
-    const scenario_options_t options = {.topology = -1, .id_set = -1};
-    scenario_options_t defaults = options;
     char text[TEXT_SIZE];
 
     stub = supervisor;
-    agv_config_defaults(&defaults.config);
     (void)snprintf(text, sizeof text,
                    "name: a hazard\nshows: [FSM-1]\nboard: [reset_button]\ntopology: %s\n%s%svehicle:\n  park_guard: "
                    "%s\n%sduration_ms: 12000\nsteps:\n"
@@ -161,7 +158,7 @@ static hazard_kind_t play(const stub_t *supervisor, const char *steps) {
                    supervisor->gateway ? "gateway" : "shared", (supervisor->setting != NULL) ? "config:\n  " : "",
                    (supervisor->setting != NULL) ? supervisor->setting : "", supervisor->rolls ? "false" : "true",
                    supervisor->rolls ? "  coasting_mm_s2: 1\n  braking_mm_s2: 1\n  locked_mm_s2: 1\n" : "", steps);
-    TEST_ASSERT_TRUE(scenario_read_text(&scenario, "test", text, &defaults));
+    TEST_ASSERT_TRUE(scenario_read_text(&scenario, "test", text, NULL));
     TEST_ASSERT_TRUE(scenario_testbed_init(&testbed, &scenario));
     hazard_init(&hazard, &scenario, &testbed);
     const scenario_watch_t watch = hazard_watch(&hazard);

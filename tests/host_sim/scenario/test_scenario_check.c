@@ -23,10 +23,8 @@ void tearDown(void) {
 /* Begin with these expectations; the run takes 1000 ms. */
 static void expect(const char *text) {
     static char file[4000];
-    scenario_options_t options = {.topology = -1, .id_set = -1};
     (void)snprintf(file, sizeof file, "name: n\nshows: [SUP-2]\nduration_ms: 1000\nexpect:\n%s", text);
-    agv_config_defaults(&options.config);
-    TEST_ASSERT_TRUE_MESSAGE(scenario_read_text(&scenario, "s.yaml", file, &options), scratch_said());
+    TEST_ASSERT_TRUE_MESSAGE(scenario_read_text(&scenario, "s.yaml", file, NULL), scratch_said());
     scenario_check_init(&check, &scenario);
 }
 

@@ -27,10 +27,8 @@ void tearDown(void) {
 
 static bool read_text(const char *text) {
     static char file[4000];
-    scenario_options_t options = {.topology = -1, .id_set = -1};
     (void)snprintf(file, sizeof file, HEAD "%s", text);
-    agv_config_defaults(&options.config);
-    return scenario_read_text(&scenario, "s.yaml", file, &options);
+    return scenario_read_text(&scenario, "s.yaml", file, NULL);
 }
 
 static void begin(const char *text) {
