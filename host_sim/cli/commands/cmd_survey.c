@@ -7,6 +7,7 @@
 #include "cli/options.h"
 #include "config/config_options.h"
 #include "io/output.h"
+#include "logs/log_sides.h"
 #include "survey/survey.h"
 
 enum { BIT_RATE_DEFAULT = 500000, BIT_RATE_LOWEST = 10000, BIT_RATE_HIGHEST = 1000000, ID_SET_NOT_GIVEN = -1 };
@@ -92,11 +93,7 @@ static bool check_source(const survey_request_t *request) {
     if (request->bus.for_ms != INTERFACE_UNTIL_SIGNAL) {
         return report("--for is for --can: a log is read to its end");
     }
-    if (is_gateway != (request->ai_interface != NULL)) {
-        return is_gateway ? report("the gateway topology needs --ai-if: which interface of the log is the AI side")
-                          : report("--ai-if needs --topology gateway: a shared bus has no AI side");
-    }
-    return true;
+    return log_sides_check(is_gateway, request->ai_interface);
 }
 
 status_t cmd_survey(int argc, char **argv) {

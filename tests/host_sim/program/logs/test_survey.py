@@ -544,6 +544,8 @@ class Refused(Case):
                                 (("--can", "can0", "--ai-if", "x"), "--ai-if is for a log"),
                                 (("--ai-can", "can0"), "--can is missing"),
                                 (("log", "--topology", "gateway"), "needs --ai-if"),
+                                (("log", "--ai-if", "can1", "--topology", "shared"), "needs --topology gateway"),
+                                (("log", "--ai-if=0123456789abcdef"), "'0123456789abcdef' is too long"),
                                 (("log", "--bitrate", "5"), "--bitrate: '5' is not a number"),
                                 (("none",), "none: No such file"), (("log", "--config-out", "log"), "same file"),
                                 (("log", "--config-out", "no/c.yaml"), "no/c.yaml"),
