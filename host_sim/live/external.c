@@ -204,6 +204,8 @@ static _Noreturn void execute(const char *command, int output) {
     sigset_t none;
     (void)sigemptyset(&none);
     (void)sigprocmask(SIG_SETMASK, &none, NULL);
+    (void)signal(SIGPIPE, SIG_DFL); /* ignored ones stay ignored: main() */
+    (void)signal(SIGXFSZ, SIG_DFL);
     (void)setpgid(0, 0);
     const int nothing = open("/dev/null", O_RDONLY);
     if ((nothing >= 0) && (dup2(output, STDOUT_FILENO) >= 0) && (dup2(nothing, STDIN_FILENO) >= 0)) {

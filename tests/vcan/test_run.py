@@ -320,6 +320,14 @@ class Scenarios(Case):
             self.assertEqual((process.end(signal.SIGTERM), process.text("stderr")), (2, "host_sim: interrupted\n"))
 
     @on_time
+    def test_signals_that_the_program_ignores_act_in_another_supervisor(self):
+        path = self.scenario("s.yaml", "STEERING_COMMAND_TIMEOUT")
+        for name in ("PIPE", "XFSZ"):
+            command = "kill -%s $$; echo it goes on >&2" % name
+            status, _, errors = self.run_to_end("scenario", "--bus", "vcan0", "--supervisor", command, path)
+            self.assertEqual((status, errors), (2, "host_sim: '%s' has ended\n" % command))
+
+    @on_time
     def test_the_gateway_needs_two_interfaces(self):
         path = self.scenario("g.yaml", "STEERING_COMMAND_TIMEOUT")
         status, output, errors = self.run_to_end("scenario", "--bus", "vcan0", "--topology", "gateway", path)
