@@ -34,7 +34,7 @@
 
 /*@ requires \valid(reset);
     assigns reset->button;
-    ensures reset->button == (vcu_alive == 0 ? \old(reset->button) : down != 0 ? 1 : remote_lost != 0 ? 3 : 2);
+    ensures reset->button == (vcu_alive == 0 ? \old(reset->button) : remote_lost != 0 ? 3 : down != 0 ? 1 : 2);
 */
 void agv_reset_button_report(agv_reset_button_t *reset, bool vcu_alive, bool remote_lost, bool down);
 
