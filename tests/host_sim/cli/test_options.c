@@ -193,7 +193,7 @@ void test_what_is_refused(void) {
     parse_bad("--word a|b f", "--word: 'a|b' is not one of a|b|cc");
     parse_bad("--word _ f", "--word: '' is not one of a|b|cc");
     parse_bad("--flag", "FILE is missing; see host_sim try --help");
-    parse_bad("x y z", "unexpected argument 'z' after 'y'; see host_sim try --help");
+    parse_bad("x y z", "FILE: more than 2 were given");
 }
 
 void test_a_message_is_one_line_whatever_it_quotes(void) {
