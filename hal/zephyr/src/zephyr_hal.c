@@ -49,7 +49,8 @@ bool zephyr_hal_init(hal_t *hal, const zephyr_hal_config_t *config) {
     (void)memset(hal, 0, sizeof *hal);
     (void)k_sem_init(&hal->wake, 0u, 1u);
     failed |= zephyr_hal_output_is_open() ? 0u : HAL_SELF_TEST_DEVICES;
-    failed |= zephyr_flash_test_start(hal); /* it can take longer than the watchdog's period */
+    failed |=
+        zephyr_flash_test_start(hal); /* can take longer than the watchdog's period: see IWDG_STM32_INITIAL_TIMEOUT */
     failed |= zephyr_watchdog_start(hal, config->watchdog_ms) ? 0u : HAL_SELF_TEST_WATCHDOG;
     hal->retained = config->retained;
     hal->reset_cause = zephyr_reset_read(hal->retained, &hal->end_before);

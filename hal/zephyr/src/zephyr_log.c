@@ -226,12 +226,16 @@ bool hal_store_append(hal_t *hal, const void *record, size_t size) {
     if ((size == 0u) || (size > HAL_STORE_RECORD_SIZE_MAX) || !ready(hal)) {
         return false;
     }
+    zephyr_log_is_read = true; /* the driver reads what it writes to, and fcb_append_finish() the record */
     int status = fcb_append(&log_buffer, (uint16_t)size, &place);
     if (status == -ENOSPC) {
         status = fcb_rotate(&log_buffer);
         status = (status == 0) ? fcb_append(&log_buffer, (uint16_t)size, &place) : status;
     }
-    return (status == 0) && write_padded(place, record, size) && (fcb_append_finish(&log_buffer, &place) == 0);
+    const bool stored =
+        (status == 0) && write_padded(place, record, size) && (fcb_append_finish(&log_buffer, &place) == 0);
+    zephyr_log_is_read = false;
+    return stored;
 }
 
 size_t zephyr_hal_log_next(hal_t *hal, zephyr_hal_log_cursor_t *cursor, void *record, size_t size) {

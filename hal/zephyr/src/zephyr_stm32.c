@@ -145,4 +145,7 @@ void zephyr_chip_open_window(uintptr_t base, uint32_t opens_ms, uint32_t expires
 #if defined(RCC_GCR_WW1RSC)
     LL_RCC_WWDG1_EnableSystemReset();
 #endif
+    /* Zephyr 3.7's driver enables its interrupt before the watchdog has a clock, which has no effect. */
+    LL_WWDG_ClearFlag_EWKUP(watchdog);
+    LL_WWDG_EnableIT_EWKUP(watchdog);
 }

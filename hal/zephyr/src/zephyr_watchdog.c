@@ -57,7 +57,9 @@ static bool start_window(void) {
 #if DT_NODE_HAS_COMPAT(WINDOW_NODE, st_stm32_window_watchdog) /* whose driver takes no lower limit */
     zephyr_chip_open_window(DT_REG_ADDR(WINDOW_NODE), WINDOW_OPENS_MS, WINDOW_EXPIRES_MS);
 #endif
-    return (window_channel >= 0) && (wdt_setup(window, WDT_OPT_PAUSE_HALTED_BY_DBG) == 0);
+    /* In a release a processor that a debugger halts is reset, as one that hangs. */
+    const uint8_t options = IS_ENABLED(CONFIG_AGV_RELEASE) ? 0u : WDT_OPT_PAUSE_HALTED_BY_DBG;
+    return (window_channel >= 0) && (wdt_setup(window, options) == 0);
 }
 
 static void feed_window(void) {
@@ -86,23 +88,42 @@ static void feed_window(void) {
 #define HARDWARE_IS_WINDOW false
 #endif
 
-static bool start_once(void) {
+/* The hardware watchdog behind the task watchdog; NULL: there is none. */
+static const struct device *find_hardware(void) {
     const struct device *const hardware = DEVICE_DT_GET_OR_NULL(HARDWARE_NODE);
     const bool is_there = !HARDWARE_IS_WINDOW && (hardware != NULL) && device_is_ready(hardware);
+    return is_there ? hardware : NULL;
+}
+
+static bool start_once(const struct device *hardware) {
     const bool is_enough =
-        is_there || DT_NODE_HAS_STATUS(WINDOW_NODE, okay) || IS_ENABLED(CONFIG_AGV_WITHOUT_HARDWARE_WATCHDOG);
+        (hardware != NULL) || DT_NODE_HAS_STATUS(WINDOW_NODE, okay) || IS_ENABLED(CONFIG_AGV_WITHOUT_HARDWARE_WATCHDOG);
     const bool window_works = start_window();
-    return (task_wdt_init(is_there ? hardware : NULL) == 0) && window_works && is_enough;
+    if (task_wdt_init(hardware) == 0) {
+        return window_works && is_enough;
+    }
+    (void)task_wdt_init(NULL); /* without it the task watchdog would have no timer */
+    return false;
+}
+
+/* The task watchdog starts it with its first channel, and does not look at the result. */
+static bool hardware_runs(const struct device *hardware) {
+    const int status = (hardware != NULL) ? wdt_setup(hardware, WDT_OPT_PAUSE_HALTED_BY_DBG) : 0;
+    return (status == 0) || (status == -EBUSY);
 }
 
 bool zephyr_watchdog_start(hal_t *hal, uint32_t period_ms) {
     static bool started; /* neither watchdog can be stopped */
     static bool works;
+    const struct device *const hardware = find_hardware();
     if (!started) {
-        works = start_once();
-        started = true;
+        works = start_once(hardware);
     }
     hal->watchdog_channel = task_wdt_add(period_ms, on_expired, NULL);
+    if (!started) {
+        works = hardware_runs(hardware) && works;
+        started = true;
+    }
     return works && (hal->watchdog_channel >= 0);
 }
 

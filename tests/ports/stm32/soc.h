@@ -21,6 +21,7 @@ typedef struct {
 typedef struct {
     uint32_t CR;
     uint32_t CFR;
+    uint32_t SR;
 } WWDG_TypeDef;
 
 typedef struct {

@@ -15,4 +15,12 @@ static inline void LL_WWDG_SetWindow(WWDG_TypeDef *watchdog, uint32_t window) {
     watchdog->CFR = (watchdog->CFR & ~0x7Fu) | window;
 }
 
+static inline void LL_WWDG_ClearFlag_EWKUP(WWDG_TypeDef *watchdog) {
+    watchdog->SR &= ~0x1u;
+}
+
+static inline void LL_WWDG_EnableIT_EWKUP(WWDG_TypeDef *watchdog) {
+    watchdog->CFR |= 0x200u;
+}
+
 #endif
