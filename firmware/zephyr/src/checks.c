@@ -6,12 +6,15 @@
 
 BUILD_ASSERT(CONFIG_HEAP_MEM_POOL_SIZE == 0, "there is no heap");
 BUILD_ASSERT(CONFIG_SYS_CLOCK_TICKS_PER_SEC >= 1000, "the kernel's clock has to tell milliseconds");
+
+#if !defined(CONFIG_ZTEST)
 BUILD_ASSERT((CONFIG_MAIN_THREAD_PRIORITY < 0) && (CONFIG_SYSTEM_WORKQUEUE_PRIORITY >= 0),
              "the supervisor is a cooperative thread, and no other one keeps the processor from it");
 BUILD_ASSERT(IS_ENABLED(CONFIG_ARCH_POSIX) ||
                  !(IS_ENABLED(CONFIG_LOG_MODE_IMMEDIATE) || IS_ENABLED(CONFIG_LOG_MODE_MINIMAL) ||
                    IS_ENABLED(CONFIG_LOG_BLOCK_IN_THREAD) || IS_ENABLED(CONFIG_DEBUG_COREDUMP)),
              "printing would delay the supervisor, and the opening of the output after a crash");
+#endif
 
 #if defined(CONFIG_AGV_RELEASE)
 BUILD_ASSERT(__ASSERT_ON != 0, "release: assertions stay on");
