@@ -147,6 +147,17 @@ static void check_count(soak_t *soak, const char *what, uint64_t counted, uint64
     }
 }
 
+/** Frames that the supervisor handed over and took back (TOP-2: at the end of an engagement). */
+static uint64_t count_purged(const soak_t *soak) {
+    uint64_t purged = 0u;
+    for (unsigned side = 0u; side < (unsigned)HAL_CAN_SIDES; side++) {
+        sim_bus_stats_t stats;
+        scenario_testbed_bus_stats(&soak->testbed, (hal_can_side_t)side, &stats);
+        purged += stats.purged;
+    }
+    return purged;
+}
+
 void soak_check_counters(soak_t *soak) {
     const soak_state_t *state = &soak->state;
     const agv_supervisor_t *supervisor = &scenario_testbed_session(&soak->testbed)->supervisor;
@@ -159,7 +170,7 @@ void soak_check_counters(soak_t *soak) {
     }
     check_count(soak, "frames received", counters->received, state->wire_others + state->delivered, 0u);
     check_count(soak, "frames received, by the port", view.received, state->wire_others + state->delivered, 0u);
-    check_count(soak, "frames sent", counters->sent, state->wire_own, WAITING_MAX);
+    check_count(soak, "frames sent", counters->sent, state->wire_own + count_purged(soak), WAITING_MAX);
     check_count(soak, "warnings", counters->warnings, state->warnings, 0u);
     check_count(soak, "refused by the gate", counters->gate_refused, 0u, 0u);
     check_count(soak, "watchdog resets", view.bites, 0u, 0u);

@@ -264,10 +264,17 @@ void hazard_commanded(hazard_t *hazard, agv_message_t message, uint16_t value) {
     hazard->is_commanded[message] = true;
 }
 
+/** A gateway whose AI side is in bus-off hears nothing there, and passes nothing. */
+static bool is_deaf_to_ai(const hazard_t *hazard) {
+    scenario_controller_t controller;
+    scenario_testbed_controller(hazard->testbed, HAL_CAN_AI, &controller);
+    return hazard->gateway && (controller.status.state == HAL_CAN_BUS_OFF);
+}
+
 void hazard_wire_command(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
     const bool whole = (frame->flags == 0u) && (frame->length == AGV_DLC);
 
-    if (!whole || !is_usable(message, frame->data)) {
+    if ((!whole || !is_usable(message, frame->data)) && !is_deaf_to_ai(hazard)) {
         hazard->has_bad_command = hazard->has_bad_command || hazard->mode.autopilot;
         hazard->bad_command_ms = hazard->mode.autopilot ? hazard->t_ms : hazard->bad_command_ms;
     }

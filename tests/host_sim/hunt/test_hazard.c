@@ -659,6 +659,17 @@ void test_h6_what_only_warns_is_no_hazard(void) {
     expect_none(&warns, steps);
 }
 
+/** A gateway that is in bus-off there hears no invalid command, and passes none. */
+void test_h6_an_invalid_command_behind_a_bus_off(void) {
+    const char *const steps =
+        "  - {at_ms: 3000, bus: send, side: ai, kind: fd, message: turn_signal_command, bytes: \"64 00\", "
+        "again_every_ms: 101}\n";
+
+    expect_hazard(HAZARD_FALSE_NODE, "an invalid command", &PASSING, steps);
+    (void)play(&PASSING, with("  - {at_ms: 3000, supervisor: bus_off, side: ai}\n%s", steps));
+    TEST_ASSERT_EQUAL_STRING("065h is missing", hazard.cause);
+}
+
 void test_h6_an_ai_side_that_is_dead(void) {
     const char *const steps = "  - {at_ms: 3000, supervisor: stall_tx, side: ai}\n";
     stub_t trips = PASSING;

@@ -272,6 +272,9 @@ void test_after_a_purge_at_most_the_frame_on_the_bus_is_sent(void) {
     send(&fixture, A, 0x100, 8, 2);
     send(&fixture, A, 0x201, 8, 3);
     sim_bus_purge(bus, A);
+    sim_bus_stats_t stats;
+    sim_bus_stats(bus, &stats);
+    TEST_ASSERT_EQUAL_UINT64(2, stats.purged);
     TEST_ASSERT_EQUAL_UINT32(0, status_of(&fixture, A).tx_pending_ms);
     send(&fixture, A, 0x300, 8, 4);
     TEST_ASSERT_EQUAL_UINT32(1, status_of(&fixture, A).tx_pending_ms);

@@ -83,6 +83,7 @@ typedef struct {
     uint64_t frames;  /**< successful frames */
     uint64_t errors;  /**< error frames */
     uint64_t busy_us; /**< time taken by both, including interframe bits */
+    uint64_t purged;  /**< frames that were taken back, and never sent */
 } sim_bus_stats_t;
 
 /** @name Private: layout only, so that a program can own a bus. @{ */
