@@ -51,7 +51,7 @@ typedef struct {
     bool was_late[2];     /**< it was late in this half second, and in the one before */
     bool has_been_late;   /**< since the start, or since monitor_reset() */
     bool has_counter;
-    bool is_stuck; /**< frames come, but their alive counter has not changed for longer than the deadline */
+    bool is_stuck; /**< frames come, but their alive counter has not counted (SUP-2) for longer than the deadline */
     message_beat_t counter;
     uint64_t counter_us; /**< when it changed last */
     uint64_t listed_us;  /**< start of the second in which changes of its signals are counted */

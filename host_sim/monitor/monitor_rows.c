@@ -144,7 +144,7 @@ static void take_counter(monitor_t *monitor, monitor_row_t *row, const uint8_t d
         row->counter_us = t_us;
     } else if (!row->is_stuck && !row->is_late && (t_us > row->counter_us + row->deadline_us)) {
         row->is_stuck = true;
-        say(monitor, row, t_us, MONITOR_BAD, "stuck: same counter for", row->deadline_us / US_PER_MS);
+        say(monitor, row, t_us, MONITOR_BAD, "stuck: counter does not count for", row->deadline_us / US_PER_MS);
     }
 }
 

@@ -71,9 +71,9 @@ void sim_bus_purge(sim_bus_t *bus, sim_bus_node_t number) {
         return;
     }
     sim_bus_node_state_t *node = &bus->nodes[number];
-    bus->stats.purged += node->tx_count;
-    if ((bus->sending & sim_bit(number)) != 0) {
-        bus->stats.purged--;
+    const bool is_sending = (bus->sending & sim_bit(number)) != 0;
+    bus->stats.purged += node->tx_count - (is_sending ? 1u : 0u);
+    if (is_sending) {
         node->tx_current = 0; /* keep one slot for the frame that is being sent; it is not sent again */
         node->tx_count = 1;
         node->current_aborted = true;
