@@ -52,44 +52,6 @@ void test_an_unplugged_node_is_alone(void) {
     TEST_ASSERT_EQUAL_UINT(127, tec_of(&fixture, A));
 }
 
-void test_several_nodes_may_be_unplugged(void) {
-    sim_bus_set_plugged(bus, A, false);
-    sim_bus_set_plugged(bus, B, false);
-    send(&fixture, B, 0x001, 8, 0); /* 294 us an attempt */
-    send(&fixture, A, 0x001, 0, 0); /* 52 - 8 + 20 + 3 = 67 bits = 134 us */
-    sim_bus_run_until(bus, 133);
-    TEST_ASSERT_EQUAL_UINT(0, tec_of(&fixture, A));
-    sim_bus_run_until(bus, 134);
-    TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, A));
-    sim_bus_run_until(bus, 294);
-    TEST_ASSERT_EQUAL_UINT(16, tec_of(&fixture, A));
-    TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, B));
-    sim_bus_run_until(bus, 100000);
-    TEST_ASSERT_EQUAL_UINT64(SIM_BUS_NEVER, sim_bus_due_us(bus)); /* passive: no further change */
-    sim_bus_set_error_counters(bus, A, 0, 0);
-    sim_bus_run_until(bus, 100134);
-    TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, A));
-    TEST_ASSERT_EQUAL_UINT(128, tec_of(&fixture, B));
-}
-
-/* Its attempts end in the middle of the others' frames: 0..294, 294..588, 588..882; theirs 0..264, 270..534, ... */
-void test_an_unplugged_node_keeps_its_own_time(void) {
-    sim_bus_set_plugged(bus, A, false);
-    send(&fixture, A, 0x001, 8, 0);
-    for (unsigned i = 0; i < 4; i++) {
-        send(&fixture, B, 0x168, 8, 0);
-    }
-    sim_bus_run_until(bus, 293);
-    TEST_ASSERT_EQUAL_UINT(0, tec_of(&fixture, A));
-    sim_bus_run_until(bus, 294);
-    TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, A));
-    sim_bus_run_until(bus, 882);
-    TEST_ASSERT_EQUAL_UINT(24, tec_of(&fixture, A));
-    sim_bus_run_until(bus, 1074);
-    TEST_ASSERT_EQUAL_UINT(4, fixture.event_count);
-    TEST_ASSERT_EQUAL_UINT64(1074, fixture.events[3].end_us);
-}
-
 /* ---- Injected errors ---- */
 
 /* Whole frame 132 bits, error frame 20: 152 bits = 304 us; then again from 310 on. */
