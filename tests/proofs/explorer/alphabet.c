@@ -378,22 +378,7 @@ const char *alphabet_name(unsigned symbol) {
     return (s->name != NULL) ? s->name : DEFECT_ROWS[s->how].name;
 }
 
-bool alphabet_scenario_only;
-bool alphabet_hangs;
-
-/* Inputs that trace.c cannot express, or not exactly: in a pause of host_sim frames wait until its end. */
-static bool has_no_scenario_step(const symbol_t *s) {
-    const bool waits = !alphabet_hangs || agv_state_commands_safe(agv_supervisor_state(&testbed.supervisor));
-    return (s->apply == sleep_ms) || ((s->apply == late) && waits) ||
-           ((s->apply == apply_bus) && (s->how == (unsigned)BUS_DEAD)) ||
-           ((s->apply == apply_defect) && (s->how == (unsigned)DEFECT_RECEIVE_DEAD)) ||
-           ((s->apply == controller) && (s->how == (unsigned)C_AI_OFF));
-}
-
 bool alphabet_enabled(unsigned symbol) {
-    if (alphabet_scenario_only && has_no_scenario_step(&SYMBOLS[symbol])) {
-        return false;
-    }
     return SYMBOLS[symbol].enabled(SYMBOLS[symbol].how);
 }
 

@@ -18,15 +18,6 @@
 /* Whether a defect of the vehicle and a trouble of a controller or of the stored latch may exist at the same time. */
 extern bool alphabet_pairs;
 
-/* Whether only inputs are tried that a scenario can express, so that a counterexample can be run. */
-extern bool alphabet_scenario_only;
-
-/*
- * Whether --scenario-only includes late ticks, in STANDBY and ACTIVE. In host_sim the frames of such a pause wait until its end,
- * with their own stamps. So their effects come later than in the model, and the end of INIT or a reset would differ.
- */
-extern bool alphabet_hangs;
-
 /* Number of symbols of the full or the short alphabet, which is the beginning of the full one. */
 unsigned alphabet_size(bool quick);
 

@@ -6,8 +6,8 @@
  * turn, until no new state is found. In every call of the supervisor all rules are checked: rules.h and oracle.h (FSM-6,
  * TOP-1, latch, safety output, first reason, starts, silence, sending), and that every sent frame passed the gate.
  *
- * A broken rule ends the search. Because the search is breadth first, no shorter sequence of symbols leads there. It is
- * written as a scenario file (trace.h).
+ * A broken rule ends the search, and the symbols that lead there are printed. Because the search is breadth first, no
+ * sequence of fewer symbols leads there.
  *
  * A frame, a late tick or a restart that leads to a known state is followed for some more milliseconds, so that its
  * consequences are checked, too.
@@ -16,15 +16,11 @@
  * --representatives). Limit: two models of one abstract state may differ in values outside the key, such as the phases of
  * cycles, and only the first ones were explored.
  *
- * usage: explorer [--quick] [--pairs] [--scenario-only [--hangs]] [--variant N] [--shard I/N] [--representatives N]
- *                 [--most STATES] [--scenario FILE]
+ * usage: explorer [--quick] [--pairs] [--variant N] [--shard I/N] [--representatives N] [--most STATES]
  *   --quick     the short alphabet, a coarser abstraction (abstract.h)
  *   --pairs     a fault of the vehicle and a trouble of a controller may exist at the same time
- *   --scenario-only  only inputs that a scenario file can express, so that a counterexample can be run
- *   --hangs     with --scenario-only: also late ticks in STANDBY and ACTIVE
  *   --shard     every N-th variant from I on
  *   --most      fail when a variant has more states
- *   --scenario  file for a counterexample; default: standard output
  */
 #include <stdbool.h>
 #include <stdint.h>
@@ -36,7 +32,6 @@
 #include "abstract.h"
 #include "alphabet.h"
 #include "model.h"
-#include "trace.h"
 #include "visited.h"
 
 static struct {
@@ -44,7 +39,6 @@ static struct {
     int variant;
     unsigned representatives;
     uint32_t most;
-    const char *scenario;
     unsigned shard;
     unsigned shards;
 } option = {.variant = -1, .shards = 1, .representatives = 1, .most = 4000000};
@@ -80,25 +74,6 @@ static bool apply(unsigned symbol) {
     return model_broken()[0] == '\0';
 }
 
-static void log_again(const uint8_t *path, unsigned length) {
-    FILE *file = (option.scenario != NULL) ? fopen(option.scenario, "w") : stdout;
-    if (file == NULL) {
-        perror(option.scenario);
-        exit(2);
-    }
-    model_root(model_variant);
-    trace_begin();
-    for (unsigned i = 0; i < length; i++) {
-        trace_says(alphabet_name(path[i]));
-        alphabet_apply(path[i]);
-    }
-    follow(); /* does nothing if the rule is broken already */
-    trace_write(file);
-    if (file != stdout) {
-        (void)fclose(file);
-    }
-}
-
 static void report_broken(uint32_t state, unsigned symbol) {
     uint8_t path[PATH_MAX_SYMBOLS + 1];
     unsigned length = visited_path(state, path);
@@ -110,7 +85,6 @@ static void report_broken(uint32_t state, unsigned symbol) {
         (void)printf("%s %s", (i == 0u) ? "" : ",", alphabet_name(path[i]));
     }
     (void)printf("\n");
-    log_again(path, length);
 }
 
 /* Try every symbol in a state. @return false: a rule was broken, or out of memory */
@@ -188,8 +162,7 @@ static bool take_option(const char *name, const char *value) {
     if (strcmp(name, "--shard") == 0) {
         return (sscanf(value, "%u/%u", &option.shard, &option.shards) == 2) && (option.shard < option.shards);
     }
-    option.scenario = value;
-    return strcmp(name, "--scenario") == 0;
+    return false;
 }
 
 static void read_options(int argc, char **argv) {
@@ -200,19 +173,14 @@ static void read_options(int argc, char **argv) {
             abstract_coarse = true;
         } else if (strcmp(argv[i], "--pairs") == 0) {
             alphabet_pairs = true;
-        } else if (strcmp(argv[i], "--scenario-only") == 0) {
-            alphabet_scenario_only = true;
-        } else if (strcmp(argv[i], "--hangs") == 0) {
-            alphabet_hangs = true;
         } else {
             good = (i + 1 < argc) && take_option(argv[i], argv[i + 1]);
             i++;
         }
     }
     if (!good) {
-        (void)fprintf(stderr,
-                      "usage: explorer [--quick] [--pairs] [--scenario-only [--hangs]] [--variant N] [--shard I/N] "
-                      "[--representatives N] [--most STATES] [--scenario FILE]\n");
+        (void)fprintf(stderr, "usage: explorer [--quick] [--pairs] [--variant N] [--shard I/N] [--representatives N] "
+                              "[--most STATES]\n");
         exit(2);
     }
 }

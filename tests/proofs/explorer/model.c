@@ -6,7 +6,7 @@
 
 /* Messages of 10 ms share no millisecond with each other, nor with those of 25 ms, because little is delayed on a real
  * bus. */
-const uint8_t MODEL_PHASE_MS[TRAFFIC_MESSAGES] = {
+static const uint8_t PHASE_MS[TRAFFIC_MESSAGES] = {
     [M_SIGNALS] = 21,   [M_GEAR] = 45,       [M_THROTTLE] = 76,       [M_STEERING] = 8,
     [M_VEHICLE] = 1,    [M_GEAR_STATUS] = 2, [M_THROTTLE_STATUS] = 4, [M_STEERING_STATUS] = 5,
     [M_EPS_STATUS] = 6, [M_POSITION] = 9,    [M_WHEELS] = 0,
@@ -31,17 +31,10 @@ const model_variant_t MODEL_VARIANT[MODEL_VARIANTS] = {
 
 model_t model;
 const model_variant_t *model_variant;
-hal_can_frame_t model_last_frame;
-hal_can_side_t model_last_side;
-const model_listener_t *model_listener;
 
 static sim_hal_sink_fn *judge_sent;
 
 static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
-    if (testbed.rules.broken[0] == '\0') {
-        model_last_frame = *frame;
-        model_last_side = side;
-    }
     model.frames++;
     if (model.stalled && (side == HAL_CAN_VEHICLE) && (testbed.hal.can[side].status.tx_pending_ms == 0u)) {
         model.taken_ms = testbed.now_ms;
@@ -228,7 +221,7 @@ static bool is_due(unsigned message, uint32_t t_ms) {
     if ((message == (unsigned)M_GEAR) && (model.defect == (uint8_t)DEFECT_AI_BABBLES)) {
         return t_ms % (uint32_t)BABBLE_MS == 0u;
     }
-    return t_ms % TRAFFIC[message].cycle_ms == MODEL_PHASE_MS[message];
+    return t_ms % TRAFFIC[message].cycle_ms == PHASE_MS[message];
 }
 
 static void send_due(void) {
@@ -268,19 +261,6 @@ static void age_pending(void) {
     }
 }
 
-static void begin_step(void) {
-    if (model_listener != NULL) {
-        model_listener->before(model_now_ms() + 1u);
-    }
-}
-
-static void after(bool was_latched) {
-    judge(was_latched);
-    if (model_listener != NULL) {
-        model_listener->after();
-    }
-}
-
 /* The rest of a millisecond after the changes of the model: tick, frames, checks. */
 static void finish_ms(void) {
     const bool was_latched = agv_state_is_latched(agv_supervisor_state(&testbed.supervisor));
@@ -288,7 +268,7 @@ static void finish_ms(void) {
     testbed_jump(0);
     send_due();
     follow_controller();
-    after(was_latched);
+    judge(was_latched);
     if (model.defect == (uint8_t)DEFECT_MODE_FLAPS) {
         model_apply_defect(); /* the next 363h may have another mode */
     }
@@ -296,7 +276,6 @@ static void finish_ms(void) {
 
 void model_run(uint32_t ms) {
     for (uint32_t i = 0; i < ms; i++) {
-        begin_step();
         testbed.now_ms++;
         finish_ms();
     }
@@ -312,12 +291,8 @@ void model_run_past(unsigned message) {
 }
 
 void model_deliver(hal_can_side_t side, const hal_can_frame_t *frames, unsigned count) {
-    begin_step();
     testbed.now_ms++;
     for (unsigned i = 0; i < count; i++) {
-        if (model_listener != NULL) {
-            model_listener->delivered(side, &frames[i]);
-        }
         testbed_frame(side, frames[i], 0);
     }
     finish_ms();
@@ -337,7 +312,6 @@ bool model_can_speak(void) {
 }
 
 void model_speak(void) {
-    begin_step();
     testbed.now_ms++;
     for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
         const traffic_message_t kept = testbed.traffic[m];
@@ -345,9 +319,6 @@ void model_speak(void) {
             testbed.traffic[m].frozen = false;
             testbed.traffic[m].counter = (uint8_t)(kept.counter + 100u);
             send(m);
-            if (model_listener != NULL) {
-                model_listener->spoke(m);
-            }
             testbed.traffic[m].frozen = kept.frozen;
             testbed.traffic[m].muted = kept.muted;
         }
@@ -371,11 +342,7 @@ static void judge_damaged(bool power_on) {
 }
 
 void model_restart(hal_reset_cause_t cause) {
-    begin_step();
     empty_recorder();
-    if (model_listener != NULL) {
-        model_listener->restarted(cause);
-    }
     testbed.now_ms++;
     sim_hal_set_now_ms(&testbed.hal, (uint32_t)testbed.now_ms + testbed.offset_ms);
     model.frames = 0;
@@ -393,29 +360,15 @@ void model_restart(hal_reset_cause_t cause) {
     finish_ms();
 }
 
-static void log_pause(uint32_t ms, bool frames_come) {
-    if (model_listener != NULL) {
-        model_listener->without_ticks(ms, frames_come);
-    }
-}
-
 void model_late(uint32_t ms) {
     for (uint32_t i = 0; i < ms; i++) {
-        begin_step();
-        if (i == 0u) {
-            log_pause(ms, true);
-        }
         testbed.now_ms++;
         send_due();
     }
-    begin_step();
-    testbed.now_ms++;
-    finish_ms();
+    model_run(1);
 }
 
 void model_sleep(uint32_t ms) {
-    begin_step();
-    log_pause(ms, false);
     testbed.now_ms += ms;
     model.wheels_ms = testbed.now_ms; /* no frames of them were received before */
     finish_ms();

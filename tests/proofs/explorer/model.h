@@ -134,24 +134,6 @@ bool model_can_speak(void);
 /* The first rule that was broken; "" = none. */
 const char *model_broken(void);
 
-/* The last sent frame. */
-extern hal_can_frame_t model_last_frame;
-extern hal_can_side_t model_last_side;
-
-/* Callbacks that record the run. A millisecond begins with `before`, then come its events. */
-typedef struct {
-    void (*before)(uint32_t at_ms);
-    void (*after)(void);
-    void (*delivered)(hal_can_side_t side, const hal_can_frame_t *frame);
-    void (*spoke)(unsigned message);
-    void (*restarted)(hal_reset_cause_t cause);
-    void (*without_ticks)(uint32_t ms, bool frames_come);
-} model_listener_t;
-extern const model_listener_t *model_listener; /* NULL: none */
-
-/* Phase of each message in its cycle. */
-extern const uint8_t MODEL_PHASE_MS[TRAFFIC_MESSAGES];
-
 /* defect.c */
 typedef enum { TRIPS_NEVER, TRIPS_ALWAYS, TRIPS_FLAPPING, TRIPS_ENGAGED, TRIPS_FOLLOWED } defect_trips_t;
 
