@@ -4,7 +4,7 @@
 A table stands between `<!-- pins of BOARD -->` and `<!-- end of pins -->`; its rows name the signal, the pin of the processor and that of
 a connector. Each signal that the overlay of the board, or its overlay for inputs, gives a pin must be there with that pin, and no other.
 CAN pins and LEDs stand in the board's own files of Zephyr: they are compared when ZEPHYR_BASE is set. The
-drawings are docs/pictures/wiring-*.svg.
+drawings are docs/pictures/wiring-BOARD.svg.
 
 --check: changes nothing; fails when a table is wrong or a drawing is out of date.
 """
