@@ -464,8 +464,6 @@ def figures_of(measured, derived):
 
 
 def read_tables(arguments):
-    if arguments.tables:
-        return json.loads(pathlib.Path(arguments.tables).read_text(encoding="utf-8"))
     done = subprocess.run([arguments.host_sim, "campaign", "--tables"], capture_output=True, check=False)
     if done.returncode != 0:
         raise Problem(f"{arguments.host_sim} campaign --tables: {done.stderr.decode().strip()}")
@@ -508,7 +506,6 @@ def main():
     parser.add_argument("--measured", action="append")
     parser.add_argument("--compare", action="append")
     parser.add_argument("--host-sim", default=str(ROOT / "build/host/bin/host_sim"))
-    parser.add_argument("--tables", help="file with the output of host_sim campaign --tables, instead of running it")
     parser.add_argument("--page", default=str(ROOT / "docs/reaction-time.md"))
     arguments = parser.parse_args()
     try:
