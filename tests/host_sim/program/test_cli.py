@@ -21,8 +21,6 @@ class Front(hostsim.Case):
         result = self.run_good("--version")
         self.assertRegex(result.stdout, r"\Ahost_sim \d+\.\d+\.\d+\n\Z")
         self.assertEqual(result.stdout, self.run_good("-V").stdout)
-        self.assert_refused(self.run_program("-V", "extra"), "unexpected argument 'extra'; see host_sim --help")
-        self.assert_refused(self.run_program("--version", "--help"), "unexpected argument '--help'")
         self.assertEqual(result.stderr, "")
 
     def test_help_lists_the_commands_and_each_has_its_own(self):
@@ -50,12 +48,6 @@ class Front(hostsim.Case):
     def test_help_wins_over_what_comes_after_it(self):
         self.run_good("replay", "--help", "--nonsense")
 
-    def test_no_command_and_an_unknown_one(self):
-        self.assert_refused(self.run_program(), "no command")
-        self.assert_refused(self.run_program("drive"), "'drive'")
-        self.assert_refused(self.run_program("--nonsense"), "'--nonsense'")
-        self.assert_refused(self.run_program(""), "''")
-
     def test_what_was_meant(self):
         self.write("c.yaml", "init_hold: 700\n")
         self.write("d.yaml", "park: AT_ONCE\n")
@@ -80,16 +72,6 @@ class Front(hostsim.Case):
                                 (("scenario", "s.yaml"), "s.yaml:2: unknown key 'show' in a scenario: did you mean 'shows'?")):
             with self.subTest(says):
                 self.assert_refused(self.run_program(*arguments), says)
-
-    def test_what_prints_one_thing_refuses_an_option_of_another(self):
-        for arguments, says in ((("config", "--schema", "--to-kconfig"), "give only one of --schema and --to-kconfig"),
-                                (("atlas", "--show", "0"), "--show: case 0 cannot happen; the next one that can is 4"),
-                                (("atlas", "--show", "-1"), "--show: '-1' is not a number from 0 to 168999"),
-                                (("atlas", "--show", "99999999"), "--show: '99999999' is not a number from 0 to 168999"),
-                                (("atlas", "--show", "168999"), "--show: case 168999 cannot happen, nor one behind it"),
-                                (("atlas", "--show", "100", "--results", "r"), "--show prints one case")):
-            self.assert_refused(self.run_program(*arguments), says)
-        self.assertNotIn("r", self.files())
 
     def test_every_command_refuses_an_unknown_option_by_its_name(self):
         for command in self.commands():
@@ -153,33 +135,6 @@ class ExitStatus(hostsim.Case):
         page = self.run_good("man").stdout.replace("\\-", "-")
         for status, means in printed.items():
             self.assertIn("\\fB%s\\fR\n%s\n" % (status, means), page)
-
-
-class Options(hostsim.Case):
-    """What the options of all commands have in common: tests/host_sim/cli/test_options.c."""
-
-    def setUp(self):
-        super().setUp()
-        self.write("log", LOG)
-
-    def test_what_is_missing_or_too_much(self):
-        self.assert_refused(self.run_program("replay"), "LOG is missing")
-        self.assert_refused(self.run_program("replay", ""), "LOG: the name is empty")
-        self.assert_refused(self.run_program("replay", "--", "log", "--tail"), "unexpected argument '--tail' after 'log'")
-        self.assert_refused(self.run_program("config", "log"), "unexpected argument 'log'")
-        self.assert_refused(self.run_program("scenario", *["s.yaml"] * 1001), "FILE: more than 1000 were given")
-
-    def test_the_limits_of_numbers(self):
-        for option, highest in (("--tail", 8640000000), ("--start-ms", 4294967295)):
-            for bad in (-1, highest + 1):
-                self.assert_refused(self.run_program("replay", option, bad, "log"), option, "'%s'" % bad)
-        self.assertIn("0.113 s", self.run_good("replay", "--start-ms", 4294967295, "log", "--tail", 19).stdout)
-        self.assert_refused(self.run_program("campaign", "--seed", 1, "--runs", 0), "--runs", "'0'")
-
-    def test_the_words_of_options(self):
-        for option, words in (("--topology", "shared|gateway"), ("--id-set", "heading|table"),
-                              ("--reset-cause", "power-on|watchdog|brown-out|lock-up|software|unknown")):
-            self.assert_refused(self.run_program("replay", option, "SHARED", "log"), option, words)
 
 
 class StandardOutput(hostsim.Case):

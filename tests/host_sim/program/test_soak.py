@@ -62,16 +62,6 @@ class Soak(hostsim.Case):
         self.soak(*parts)
         self.assertEqual(self.figures("parts"), self.figures("whole"))
 
-    def test_options(self):
-        for arguments, says in (((), "--hours is missing"), (("--hours", "1"), "--seed is missing"),
-                                (("--hours", "0", "--seed", "1"), "--hours"), (("--hours", "1.5", "--seed", "1"), "a time: 2h, or whole"),
-                                (("--hours", "1", "--seed", "x"), "--seed"),
-                                (("--hours", "1", "--seed", "1", "--shard", "2"), "--shard: '2'"),
-                                (("--hours", "1", "--seed", "1", "--checkpoint", "-"), "--checkpoint: a checkpoint is read and written"),
-                                (("--hours", "1", "--seed", "1", "more"), "unexpected argument 'more'"),
-                                (("--hours", "1", "--seed", "1", "--results", "a", "--checkpoint", "a"), "same file")):
-            self.assert_refused(self.run_program("soak", *arguments), says)
-
     # so long that a soak which is not refused at its start runs into the limit of time
     LONG = ("--hours", 876000, "--seed", 1)
 

@@ -503,17 +503,6 @@ class Interfaces(hostsim.Case):
             result = self.replay(log, "--ai-if", "ai0", *arguments)
             self.assertEqual(list(map(str, result.sent())), list(map(str, stated.sent())))
 
-    def test_the_ai_side_and_the_topology_go_together(self):
-        log = traffic.log(traffic.frames(50))
-        self.assert_refused(self.refuse(log, "--topology", "gateway"), "--ai-if")
-        self.assert_refused(self.refuse(log, "--ai-if", "can0", "--topology", "shared"), "--ai-if", "gateway")
-        self.write("c.yaml", "topology: shared\n")
-        self.assert_refused(self.refuse(log, "--ai-if", "can0", "--config", "c.yaml"), "--ai-if", "gateway")
-        self.assert_refused(self.refuse(log, "--topology=gateway", "--ai-if=0123456789abcdef"), "--ai-if", "too long")
-        self.write("c.yaml", "topology: gateway\n")
-        self.assert_refused(self.refuse(log, "--config", "c.yaml"), "--ai-if")
-        self.replay(log, "--config", "c.yaml", "--ai-if", "can0")
-
 
 class Restart(hostsim.Case):
     """--reset-cause and --store."""
@@ -550,11 +539,6 @@ class Restart(hostsim.Case):
         result = self.replay(traffic.log(traffic.frames(100)), "--store", "store", "--reset-cause", "watchdog")
         self.assertEqual([event["from"] for event in result.of("state")].count(None), 1)
         self.assertEqual(result.events()[0]["event"], "state")
-
-    def test_a_store_on_standard_output_is_refused(self):
-        self.write("log", traffic.log(traffic.frames(100)))
-        for path in ("-", "/dev/stdout"):
-            self.assert_refused(self.run_program("replay", "--store", path, "log"), "--store: storage is read and written")
 
     # Shows: FSM-7, STORE_INVALID
     def test_a_store_that_is_damaged_counts_as_tripped_and_warns(self):

@@ -140,29 +140,6 @@ class Skeleton(hostsim.Case):
         self.assertEqual(refused(log(engage_ms=0)), "host_sim: my.log: no fault to replay: nothing was supervised; host_sim "
                                                     "replay says why\n")
 
-    def test_what_makes_no_sense(self):
-        self.write("my.log", LOGS["the EPS dies"][1])
-        self.write("old.yaml", "old")
-        self.assert_refused(self.run_program("scenario", "--from", "my.log", "-o", "old.yaml"),
-                            "old.yaml: exists already, and is not replaced")
-        self.assertEqual(self.read("old.yaml"), "old")
-        self.assert_refused(self.run_program("scenario", "--from", "-"), "the log is read twice")
-        self.assert_refused(self.run_program("scenario", "--from", "no.log"), "no.log: No such file")
-        os.mkfifo(self.folder / "pipe")
-        self.assert_refused(self.run_program("scenario", "--from", "pipe"), "--from: the log is read twice, and pipe is not a "
-                                                                            "regular file")
-        (self.folder / "pipe").unlink()
-        self.assert_refused(self.run_program("scenario", "--from", "my.log", "old.yaml"), "--from takes no FILE")
-        self.assert_refused(self.run_program("scenario", "-o", "x.yaml", "old.yaml"), "need --from LOG")
-        for option in ("--junit=x", "--events=x", "--bus=vcan0", "--supervisor=x", "--sent=x", "--tolerance=5", "--why=x",
-                       "--report=x", "--trace=x"):
-            for instead in ("--from=my.log", "--schema"):
-                self.assert_refused(self.run_program("scenario", instead, option), "takes no option of a run")
-        self.assert_refused(self.run_program("scenario", "--from", "my.log", "--schema"), "--schema")
-        self.assert_refused(self.run_program("scenario", "--from", "old.yaml"), "old.yaml")
-        self.assert_refused(self.run_program("scenario", "--from", "my.log", "-o", "no/where.yaml"), "no/where.yaml")
-        self.assertEqual(self.files(), ["my.log", "old.yaml"])
-
 
 if __name__ == "__main__":
     os.environ.setdefault("HOST_SIM", "build/host/bin/host_sim")

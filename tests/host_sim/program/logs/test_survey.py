@@ -535,27 +535,6 @@ class Text(Case):
 
 
 class Refused(Case):
-    def test_bad_command_lines(self):
-        self.write("log", traffic.log(traffic.frames(500)))
-        for arguments, part in (((), "LOG or --can is missing"), (("log", "log"), "unexpected argument 'log'"),
-                                (("log", "--can", "can0"), "give only one of LOG and --can"),
-                                (("log", "--for", "1s"), "--for is for --can"),
-                                (("--can", "can0", "--for", "1m"), "--for: '1m' is not a time"),
-                                (("--can", "can0", "--ai-if", "x"), "--ai-if is for a log"),
-                                (("--ai-can", "can0"), "--can is missing"),
-                                (("log", "--topology", "gateway"), "needs --ai-if"),
-                                (("log", "--ai-if", "can1", "--topology", "shared"), "needs --topology gateway"),
-                                (("log", "--ai-if=0123456789abcdef"), "'0123456789abcdef' is too long"),
-                                (("log", "--bitrate", "5"), "--bitrate: '5' is not a number"),
-                                (("none",), "none: No such file"), (("log", "--config-out", "log"), "same file"),
-                                (("log", "--config-out", "no/c.yaml"), "no/c.yaml"),
-                                (("--can", "nosuchcan", "--config-out", "no/c.yaml"), "no/c.yaml"),
-                                (("log", "--json", "--config-out", "-"), "--json and --config-out -: only one"),
-                                (("log", "--json", "--config-out", "/dev/stdout"), "--json and --config-out -"),
-                                (("--can", "nosuchcan"), "nosuchcan")):
-            with self.subTest(arguments):
-                self.assert_refused(self.run_program("survey", *arguments), part)
-
     def test_logs_that_cannot_be_read_leave_the_proposal_as_it_was(self):
         packed = gzip.compress(traffic.log(traffic.frames(500)).encode())
         for content, part in ((b"", "contains no frame"), (b"\x00" * 100, "binary data"), (packed[:200], "cut off"),
