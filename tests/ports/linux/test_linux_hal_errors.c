@@ -106,29 +106,6 @@ void test_frames_that_wait_at_bus_off_are_never_sent(void) {
     vcan_expect_id(tester, 0x102);
 }
 
-void test_a_late_echo_is_not_taken_for_the_one_of_the_next_frame(void) {
-    vcan_send_error(tester, CAN_ERR_BUSOFF, 0);
-    vcan_send_error(tester, CAN_ERR_RESTARTED, 0);
-    TEST_ASSERT_TRUE(port_send(&hal, 0x10F)); /* its echo comes behind both, */
-    vcan_send(tester, 0x105, 8, vcan_frame(0).data);
-    (void)port_receive(&hal);
-    (void)port_receive(&hal);
-    expect_status(HAL_CAN_ERROR_ACTIVE, 1, 0);
-    TEST_ASSERT_TRUE(port_send(&hal, 0x100));
-    TEST_ASSERT_TRUE(port_send(&hal, 0x101));
-    TEST_ASSERT_EQUAL_HEX32(0x105, port_receive(&hal).frame.id); /* and was read with this one */
-    TEST_ASSERT_EQUAL_UINT(1, left.count);
-    vcan_expect_id(tester, 0x10F);
-    vcan_expect_id(tester, 0x100);
-    vcan_expect_nothing(tester);
-    TEST_ASSERT_EQUAL_UINT(0, port_drain(&hal));
-    vcan_expect_id(tester, 0x101);
-    TEST_ASSERT_EQUAL_UINT(3, left.count);
-    TEST_ASSERT_EQUAL_HEX32(0x10F, left.frames[0].id);
-    TEST_ASSERT_EQUAL_HEX32(0x100, left.frames[1].id);
-    TEST_ASSERT_EQUAL_HEX32(0x101, left.frames[2].id);
-}
-
 void test_frames_that_the_socket_lost_are_counted_round(void) {
     const hal_can_frame_t foreign = vcan_frame(0x105);
     hal.sides[HAL_CAN_VEHICLE].overruns = 65530;
@@ -167,13 +144,6 @@ void test_an_interface_that_goes_down_and_comes_back(void) {
     vcan_expect_id(tester, 0x102);
     vcan_send(tester, 0x105, 8, frame.data);
     TEST_ASSERT_EQUAL_HEX32(0x105, port_receive(&hal).frame.id);
-}
-
-void test_an_interface_that_is_down_is_detected_by_sending(void) {
-    vcan_down("vcan0");
-    TEST_ASSERT_FALSE(port_send(&hal, 0x100));
-    TEST_ASSERT_EQUAL_UINT(0, port_drain(&hal));
-    expect_status(HAL_CAN_BUS_OFF, 1, 0);
 }
 
 void test_an_interface_that_is_down_at_the_start(void) {

@@ -80,6 +80,7 @@ void test_a_purge_waits_for_the_echo_of_a_frame_that_was_given_just_now(void) {
 }
 
 /* The supervisor withdraws all frames every 101 ms while the bus is blocked. Each frame given up is one more in the kernel. */
+/* Shows: SUP-7 */
 void test_few_frames_gather_in_a_kernel_that_is_blocked(void) {
     uint64_t now_us = 0;
     for (unsigned i = 0; i < 100; i++) {

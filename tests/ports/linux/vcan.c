@@ -1,9 +1,6 @@
 #include "vcan.h"
 
 #include <linux/can/raw.h>
-#include <linux/if_link.h>
-#include <linux/netlink.h>
-#include <linux/rtnetlink.h>
 #include <net/if.h>
 #include <poll.h>
 #include <sched.h>
@@ -31,46 +28,26 @@ static void require(bool works, const char *what) {
     }
 }
 
-/* A request for an existing or a new interface. */
-typedef struct {
-    struct nlmsghdr header;
-    struct ifinfomsg interface;
-    struct rtattr name;
-    char name_text[IFNAMSIZ];
-    struct rtattr link_info;
-    struct rtattr kind;
-    char kind_text[8];
-} link_request_t;
+void vcan_run(const char *command) {
+    require(system(command) == 0, command);
+}
 
-static void ask_rtnetlink(uint16_t type, uint16_t flags, const char *interface) {
-    link_request_t request = {.header = {.nlmsg_len = sizeof request, .nlmsg_type = type},
-                              .name = {.rta_len = sizeof(struct rtattr) + IFNAMSIZ, .rta_type = IFLA_IFNAME},
-                              .link_info = {.rta_len = 2 * sizeof(struct rtattr) + 8, .rta_type = IFLA_LINKINFO},
-                              .kind = {.rta_len = sizeof(struct rtattr) + 5, .rta_type = IFLA_INFO_KIND},
-                              .kind_text = "vcan"};
-    struct {
-        struct nlmsghdr header;
-        struct nlmsgerr verdict;
-    } answer = {0};
-    request.header.nlmsg_flags = (uint16_t)(NLM_F_REQUEST | NLM_F_ACK | flags);
-    (void)snprintf(request.name_text, sizeof request.name_text, "%s", interface);
-    const int asked = socket(AF_NETLINK, SOCK_RAW, NETLINK_ROUTE);
-    require(asked >= 0, "no netlink socket");
-    require(send(asked, &request, sizeof request, 0) == (ssize_t)sizeof request, "rtnetlink does not listen");
-    require(recv(asked, &answer, sizeof answer, 0) > 0, "rtnetlink does not answer");
-    (void)close(asked);
-    require(answer.verdict.error == 0, interface);
+static void change(const char *command, const char *interface, const char *rest) {
+    char line[64];
+    (void)snprintf(line, sizeof line, "ip link %s dev %s %s", command, interface, rest);
+    vcan_run(line);
     links_changed = true;
 }
 
 void vcan_add(const char *interface) {
-    ask_rtnetlink(RTM_NEWLINK, NLM_F_CREATE | NLM_F_EXCL, interface);
+    change("add", interface, "type vcan");
 }
 
 void vcan_remove(const char *interface) {
-    ask_rtnetlink(RTM_DELLINK, 0, interface);
+    change("del", interface, "");
 }
 
+/* Not by the program ip, which takes long to start on an emulated processor. */
 static void set_up(const char *interface, bool up) {
     struct ifreq request = {0};
     const int asked = socket(AF_INET, SOCK_DGRAM, 0);
@@ -90,10 +67,6 @@ void vcan_up(const char *interface) {
 
 void vcan_down(const char *interface) {
     set_up(interface, false);
-}
-
-void vcan_run(const char *command) {
-    require(system(command) == 0, command);
 }
 
 void vcan_stick(void) {
