@@ -99,53 +99,6 @@ surroundings() {
     same "$(for i in {1..200}; do printf '%s\n%s\n' "$i" "$i"; done)" "$(<both)"
 }
 
-@test "machine: standard input and output can be opened anew, also where the other end is gone" {
-    local statuses
-    printf 'one\ntwo\n' | timeout 60 "$vcan" --with "$WAY" --quiet bash -c 'sleep 1; read -r line </dev/stdin; echo "$line" >/dev/stdout
-        cat /dev/stdin; echo end; exit 7' >out || status=$?
-    [[ ${status:-0} -eq 7 ]]
-    same $'one\ntwo\nend' "$(<out)"
-
-    timeout 60 "$vcan" --with "$WAY" --quiet bash -c 'trap "" PIPE; echo first; until ! echo more 2>/dev/null; do sleep 0.1; done
-        : >/dev/stdout; : </dev/stdin; exit 8' </dev/null | head -n 1 >out
-    statuses=${PIPESTATUS[*]}
-    [[ $statuses == "8 0" && $(<out) == first ]]
-}
-
-@test "machine: what is closed at the start reads as empty, and swallows what is written" {
-    local status=0
-    timeout 60 "$vcan" --with "$WAY" sh -c 'cat; echo end; echo error >&2; exit 5' <&- >out 2>&- || status=$?
-    [[ $status -eq 5 ]]
-    same end "$(<out)"
-    echo input | timeout 60 "$vcan" --with "$WAY" --quiet sh -c 'echo output; cat >&2' 2>err >&-
-    same input "$(<err)"
-}
-
-@test "machine: output that cannot be written: one line that says why, and 125" {
-    local status=0
-    "$vcan" --with "$WAY" --quiet sh -c 'echo lost; echo told >&2' </dev/null >/dev/full 2>err || status=$?
-    [[ $status -eq 125 ]]
-    same $'told\nwith-vcan: standard output: No space left on device' "$(sort err)"
-}
-
-@test "folders: by a link, in one that the machine does not have, and in one that is gone" {
-    ln -s "$vcan" link
-    mkdir gone
-    cd gone
-    rmdir ../gone
-    run "$BATS_TEST_TMPDIR/link" --with "$WAY" true
-    echo "$output"
-    [[ $status -eq 125 && ${lines[-1]} == "with-vcan: the working directory no longer exists" ]]
-    [[ $(grep -vc '^shell-init: ' <<<"$output") -eq 1 ]] # bash says that before it looks at the script
-
-    folder=$(mktemp -d -p /dev/shm)
-    cd "$folder"
-    run "$BATS_TEST_TMPDIR/link" --with "$WAY" --quiet true
-    rmdir "$folder"
-    [[ $status -eq 125 ]]
-    same "with-vcan: no way into $folder in the virtual machine, whose /run, /dev, /proc and /sys are its own" "$output"
-}
-
 # A start that comes as far as QEMU.
 start_only() {
     fails_with "ended before the command did" /usr/bin/python3 -I "$ROOT/scripts/tools/vcan/run-machine.py" --kernel "$PWD" \
@@ -180,34 +133,6 @@ folders() {
     await_end "$machine"
     start_only # clears up
     [[ $(folders) -eq 0 ]]
-}
-
-@test "machine: nobody reads its output any more: the command learns it, and ends" {
-    local statuses
-    "$vcan" --with "$WAY" --quiet yes </dev/null 2>err | head -n 2 >out
-    statuses=${PIPESTATUS[*]}
-    [[ $statuses == "141 0" ]]
-    same $'y\ny' "$(<out)"
-}
-
-@test "machine: the user is the same, has files as outside and may change the network" {
-    if ((EUID != 0)); then
-        skip "needs root to become another user"
-    fi
-    local as_user=(setpriv --reuid 1234 --regid 1234 --groups "1234,1235")
-    chmod 755 "$BATS_RUN_TMPDIR" # only root can look into it
-    if ! "${as_user[@]}" test -r "$ROOT/scripts/with-vcan"; then
-        skip "another user cannot read the project here"
-    fi
-    "$ROOT/scripts/tools/vcan/prepare-machine.sh" >/dev/null # which that user cannot
-    echo secret >secret
-    chmod 600 secret
-    mkdir -m 777 shared
-    run "${as_user[@]}" "$vcan" --with "$WAY" --quiet bash -c 'id -u; id -G; echo mine >shared/mine; cat secret
-        tc qdisc add dev vcan0 root netem limit 5 && ip link set vcan0 down && echo changed >/dev/stdout; exit 4'
-    same $'1234\n1234 1235\ncat: secret: Permission denied\nchanged' "$output"
-    [[ $status -eq 4 ]]
-    same '1234 1234 mine' "$(stat -c '%u %g' shared/mine) $(<shared/mine)"
 }
 
 @test "namespace: arguments, environment, user, status and signals; of each interface its own frames" {
@@ -271,18 +196,6 @@ missing: run 'scripts/install-deps vcan'; qemu: 'qemu-system-"*"' is missing: ru
     [[ $status -eq 125 && ${#lines[@]} -eq 1 && $output == "with-vcan: namespace: no vcan in kernel "* ]]
 }
 
-@test "qemu: no network to fetch the kernel: it says so, 125, and leaves nothing half-made" {
-    mkdir project
-    cp -r "$ROOT/scripts" project/
-    mkdir bin
-    printf '#!/bin/sh\necho "E: Could not resolve host" >&2\nexit 100\n' | tee bin/apt-get >bin/apt-cache
-    chmod +x bin/apt-*
-    run env PATH="$PWD/bin:$PATH" project/scripts/with-vcan --with qemu true
-    echo "$output"
-    [[ $status -eq 125 && ${lines[1]} == *"no kernel could be downloaded (apt-get: Could not resolve host): is there a network?" ]]
-    same '.lock' "$(ls -A project/build/vcan)"
-}
-
 @test "uml: one that crashes at its start: it says so, and goes on to QEMU with the whole input; asked for, 125" {
     mkdir bin
     printf '#!/bin/sh\n[ "$1" = --version ] || kill -SEGV $$\n' >bin/linux.uml
@@ -295,17 +208,6 @@ missing: run 'scripts/install-deps vcan'; qemu: 'qemu-system-"*"' is missing: ru
         cat err
         [[ $(sed -n 2p err) == "with-vcan: user-mode-linux does not start here: "* && $(sed -n 3p err) == *"(qemu-system-"* ]]
     fi
-}
-
-@test "qemu: a kernel that panics: one line with its last words, and 125" {
-    mkdir broken empty
-    cp "$("$ROOT/scripts/tools/vcan/prepare-machine.sh")/kernel" broken/
-    (cd empty && echo . | cpio --create --format=newc --quiet) >broken/initramfs
-    run /usr/bin/python3 -I "$ROOT/scripts/tools/vcan/run-machine.py" --kernel "$PWD/broken" --qemu "qemu-system-$(uname -m)" \
-        --accel tcg --interfaces vcan0 -- true
-    echo "$output"
-    [[ $status -eq 125 && ${#lines[@]} -eq 1 ]]
-    [[ $output == "with-vcan: the virtual machine ended before the command did ("*"Kernel panic"* ]]
 }
 
 @test "options: help, and in one line what is wrong" {
