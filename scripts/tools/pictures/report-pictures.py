@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Draw the pictures of docs/report.md from pages that the built host_sim makes: docs/pictures/report*.png. Needs Chromium.
-usage: report-pictures [--host-sim PROGRAM]"""
+"""Draw the pictures of docs/report.md from pages that the built host_sim makes: docs/pictures/report*.png. Needs Chromium
+and pngquant. usage: report-pictures [--host-sim PROGRAM]"""
 import argparse
 import pathlib
 import subprocess
@@ -10,7 +10,6 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests/host_sim/program"))
 import browser  # noqa: E402
-import png  # noqa: E402
 import traffic  # noqa: E402
 
 EXAMPLE = ROOT / "host_sim/examples/ai-stops.log"
@@ -45,7 +44,7 @@ def main():
             top, bottom = chromium.run(PART % part)
             path = ROOT / "docs/pictures" / f"{name}.png"
             chromium.picture(path, True, {"x": 0, "y": top, "width": width, "height": bottom - top})
-            path.write_bytes(png.with_palette(path.read_bytes()))
+            subprocess.run(["pngquant", "--force", "--ext", ".png", "--strip", "--nofs", "--posterize", "2", "256", path], check=True)
             print(f"{path.relative_to(ROOT)}: {path.stat().st_size / 1000:.0f} KB")
 
 

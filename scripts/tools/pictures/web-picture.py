@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""Draw docs/pictures/web.png from the built page (preset wasm). Needs Chromium. usage: web-picture"""
+"""Draw docs/pictures/web.png from the built page (preset wasm). Needs Chromium and pngquant. usage: web-picture"""
 import functools
 import http.server
 import pathlib
+import subprocess
 import sys
 import threading
 import time
@@ -10,7 +11,6 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests/host_sim/program"))
 import browser  # noqa: E402
-import png  # noqa: E402
 
 PAGE = ROOT / "build/wasm/page"
 PICTURE = ROOT / "docs/pictures/web.png"
@@ -51,7 +51,7 @@ def main():
         height = chromium.run("document.getElementById('picture').getBoundingClientRect().bottom + scrollY + 2")
         chromium.picture(PICTURE, True, {"x": 0, "y": 0, "width": 1320, "height": height})
     server.shutdown()
-    PICTURE.write_bytes(png.with_palette(PICTURE.read_bytes()))
+    subprocess.run(["pngquant", "--force", "--ext", ".png", "--strip", "--nofs", "--posterize", "2", "256", PICTURE], check=True)
     print(f"{PICTURE.relative_to(ROOT)}: {PICTURE.stat().st_size / 1000:.0f} KB")
 
 
