@@ -33,144 +33,93 @@ static void parse_bad(const char *text, const char *expected) {
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(wrong, expected), wrong);
 }
 
-static void is_frame(const char *text, uint32_t id, uint8_t flags, uint8_t length, const char *first_8_bytes) {
+#define F "(1.000000) c "
+
+typedef struct {
+    const char *text; /* behind the interface */
+    uint32_t id;
+    uint8_t flags;
+    uint8_t length;
+    char data[9];
+} row_t;
+
+static void is_frame(const row_t *row) {
+    char text[256];
+    (void)snprintf(text, sizeof text, F "%s", row->text);
     parse_good(text);
-    TEST_ASSERT_EQUAL_HEX32(id, record.frame.id);
-    TEST_ASSERT_EQUAL_HEX8(flags, record.frame.flags);
-    TEST_ASSERT_EQUAL_UINT8(length, record.frame.length);
-    TEST_ASSERT_EQUAL_HEX8_ARRAY(first_8_bytes, record.frame.data, 8);
+    TEST_ASSERT_EQUAL_HEX32_MESSAGE(row->id, record.frame.id, text);
+    TEST_ASSERT_EQUAL_HEX8_MESSAGE(row->flags, record.frame.flags, text);
+    TEST_ASSERT_EQUAL_UINT8_MESSAGE(row->length, record.frame.length, text);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY_MESSAGE(row->data, record.frame.data, 8, text);
     TEST_ASSERT_EQUAL_UINT32(0, record.frame.time_ms);
 }
 
-void test_a_classic_frame(void) {
-    is_frame("(1700000000.000001) can0 43F#0000000000000011", 0x43F, 0, 8, "\0\0\0\0\0\0\0\x11");
-    TEST_ASSERT_EQUAL_UINT64(1700000000000001u, record.stamp_us);
-    TEST_ASSERT_EQUAL_UINT(4, record.interface_length);
-    TEST_ASSERT_EQUAL_MEMORY("can0", record.interface, 4);
+void test_frames_of_each_kind(void) {
+    static const row_t rows[] = {
+        {"43F#0000000000000011", 0x43F, 0, 8, "\0\0\0\0\0\0\0\x11"},
+        {"0a3#abcdef", 0x0A3, 0, 3, "\xAB\xCD\xEF"},
+        {"43F#00 R", 0x43F, 0, 1, ""},
+        {"43F#00 T", 0x43F, 0, 1, ""},
+        {"43F#00\r", 0x43F, 0, 1, ""},
+        {"43F#00 T\r", 0x43F, 0, 1, ""},
+        {"43F#0011223344556677_9", 0x43F, 0, 8, "\x00\x11\x22\x33\x44\x55\x66\x77"}, /* a raw DLC */
+        {"43F#0011223344556677_F T", 0x43F, 0, 8, "\x00\x11\x22\x33\x44\x55\x66\x77"},
+        {"0000043F#01", 0x43F, HAL_CAN_EXTENDED, 1, "\x01"},
+        {"1FFFFFFF#", 0x1FFFFFFF, HAL_CAN_EXTENDED, 0, ""},
+        {"20000004#0001000000000000", 4, HAL_CAN_ERROR, 8, "\0\x01"},
+        {"3FFFFFFF#", 0x1FFFFFFF, HAL_CAN_ERROR, 0, ""},
+        {"43F#R", 0x43F, HAL_CAN_REMOTE, 0, ""},
+        {"43F#R R", 0x43F, HAL_CAN_REMOTE, 0, ""},
+        {"43F#R8", 0x43F, HAL_CAN_REMOTE, 8, ""},
+        {"43F#R8_F", 0x43F, HAL_CAN_REMOTE, 8, ""},
+        {"0000043F#R3", 0x43F, HAL_CAN_REMOTE | HAL_CAN_EXTENDED, 3, ""},
+        {"43F##1", 0x43F, HAL_CAN_FD, 0, ""},
+        {"43F##30011223344556677", 0x43F, HAL_CAN_FD, 8, "\x00\x11\x22\x33\x44\x55\x66\x77"},
+        {"0000043F##F00112233445566778899AABB", 0x43F, HAL_CAN_FD | HAL_CAN_EXTENDED, 12,
+         "\x00\x11\x22\x33\x44\x55\x66\x77"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        is_frame(&rows[i]);
+    }
 }
 
 void test_every_length_of_a_classic_frame(void) {
     static const char digits[] = "0123456789ABCDEF";
     for (unsigned length = 0; length <= 8; length++) {
         char text[64];
-        char expected[8] = {0};
-        (void)snprintf(text, sizeof text, "(0.000000) c 7FF#%.*s", (int)(2 * length), digits);
-        memcpy(expected, "\x01\x23\x45\x67\x89\xAB\xCD\xEF", length);
-        is_frame(text, 0x7FF, 0, (uint8_t)length, expected);
+        row_t row = {.text = text, .id = 0x7FF, .length = (uint8_t)length};
+        (void)snprintf(text, sizeof text, "7FF#%.*s", (int)(2 * length), digits);
+        memcpy(row.data, "\x01\x23\x45\x67\x89\xAB\xCD\xEF", length);
+        is_frame(&row);
     }
-    parse_bad("(0.000000) c 7FF#0123456789ABCDEF01", "longer than 8 bytes");
-}
-
-void test_lower_case_digits_are_digits(void) {
-    is_frame("(0.000000) c 0a3#abcdef", 0x0A3, 0, 3, "\xAB\xCD\xEF\0\0\0\0\0");
-}
-
-void test_an_extended_frame(void) {
-    is_frame("(0.000000) c 0000043F#01", 0x43F, HAL_CAN_EXTENDED, 1, "\x01\0\0\0\0\0\0\0");
-    is_frame("(0.000000) c 1FFFFFFF#", 0x1FFFFFFF, HAL_CAN_EXTENDED, 0, "\0\0\0\0\0\0\0\0");
-}
-
-void test_an_error_frame(void) {
-    is_frame("(0.000000) c 20000004#0001000000000000", 4, HAL_CAN_ERROR, 8, "\0\x01\0\0\0\0\0\0");
-    is_frame("(0.000000) c 3FFFFFFF#", 0x1FFFFFFF, HAL_CAN_ERROR, 0, "\0\0\0\0\0\0\0\0");
-    parse_bad("(0.000000) c 20000004#R", "after the frame");
-    parse_bad("(0.000000) c 20000004##000", "not CAN FD");
-}
-
-void test_a_remote_frame(void) {
-    is_frame("(0.000000) c 43F#R", 0x43F, HAL_CAN_REMOTE, 0, "\0\0\0\0\0\0\0\0");
-    is_frame("(0.000000) c 43F#R8", 0x43F, HAL_CAN_REMOTE, 8, "\0\0\0\0\0\0\0\0");
-    is_frame("(0.000000) c 43F#R8_F", 0x43F, HAL_CAN_REMOTE, 8, "\0\0\0\0\0\0\0\0");
-    is_frame("(0.000000) c 0000043F#R3", 0x43F, HAL_CAN_REMOTE | HAL_CAN_EXTENDED, 3, "\0\0\0\0\0\0\0\0");
-    parse_good("(0.000000) c 43F#R R");
-    parse_bad("(0.000000) c 43F#R9", "after the frame");
-    parse_bad("(0.000000) c 43F#R7_9", "after the frame");
-    parse_bad("(0.000000) c 43F#R00", "after the frame");
-}
-
-void test_a_can_fd_frame(void) {
-    is_frame("(0.000000) c 43F##1", 0x43F, HAL_CAN_FD, 0, "\0\0\0\0\0\0\0\0");
-    is_frame("(0.000000) c 43F##30011223344556677", 0x43F, HAL_CAN_FD, 8, "\x00\x11\x22\x33\x44\x55\x66\x77");
-    is_frame("(0.000000) c 0000043F##F00112233445566778899AABB", 0x43F, HAL_CAN_FD | HAL_CAN_EXTENDED, 12,
-             "\x00\x11\x22\x33\x44\x55\x66\x77");
-    parse_bad("(0.000000) c 43F##", "flags");
-    parse_bad("(0.000000) c 43F##G", "flags");
-    parse_bad("(0.000000) c 43F##10", "odd number");
-    parse_bad("(0.000000) c 43F##10011223344556677_9", "after the frame");
 }
 
 void test_the_longest_can_fd_frame(void) {
-    char text[256] = "(0.000000) c 1FFFFFFF##1";
+    char text[256] = F "1FFFFFFF##1";
     for (unsigned i = 0; i < 64; i++) {
         strcat(text, "A5");
     }
-    is_frame(text, 0x1FFFFFFF, HAL_CAN_FD | HAL_CAN_EXTENDED, 64, "\xA5\xA5\xA5\xA5\xA5\xA5\xA5\xA5");
+    is_frame(&(row_t){&text[sizeof F - 1u], 0x1FFFFFFF, HAL_CAN_FD | HAL_CAN_EXTENDED, 64,
+                      "\xA5\xA5\xA5\xA5\xA5\xA5\xA5\xA5"});
     strcat(text, "00");
     parse_bad(text, "longer than 64 bytes");
 }
 
-void test_a_raw_dlc_is_a_frame_of_eight_bytes(void) {
-    is_frame("(0.000000) c 43F#0011223344556677_9", 0x43F, 0, 8, "\x00\x11\x22\x33\x44\x55\x66\x77");
-    parse_good("(0.000000) c 43F#0011223344556677_F T");
-    parse_bad("(0.000000) c 43F#0011223344556677_8", "after the frame");
-    parse_bad("(0.000000) c 43F#0011223344556677_G", "after the frame");
-    parse_bad("(0.000000) c 43F#0011223344556677_", "after the frame");
-    parse_bad("(0.000000) c 43F#00112233445566_9", "after the frame");
-}
-
-void test_direction_and_carriage_return_may_follow(void) {
-    parse_good("(0.000000) c 43F#00 R");
-    parse_good("(0.000000) c 43F#00 T");
-    parse_good("(0.000000) c 43F#00\r");
-    parse_good("(0.000000) c 43F#00 T\r");
-    parse_bad("(0.000000) c 43F#00 X", "after the frame");
-    parse_bad("(0.000000) c 43F#00  R", "after the frame");
-    parse_bad("(0.000000) c 43F#00 RT", "after the frame");
-    parse_bad("(0.000000) c 43F#00\r\r", "after the frame");
-    parse_bad("(0.000000) c 43F#00\rR", "after the frame");
-    parse_bad("(0.000000) c 43F#00 ", "after the frame");
-}
-
 void test_time_stamps(void) {
-    parse_good("(0.000000) c 43F#");
-    TEST_ASSERT_EQUAL_UINT64(0, record.stamp_us);
-    parse_good("(0000000001.500000) c 43F#");
-    TEST_ASSERT_EQUAL_UINT64(1500000u, record.stamp_us);
-    parse_good("(000000000001.000002) c 43F#");
-    TEST_ASSERT_EQUAL_UINT64(1000002u, record.stamp_us);
-}
-
-void test_time_stamps_of_nanoseconds_are_rounded_down(void) {
-    parse_good("(12.345678999) c 43F#");
-    TEST_ASSERT_EQUAL_UINT64(12345678u, record.stamp_us);
-}
-
-void test_the_latest_time_stamp(void) {
-    parse_good("(999999999999.999999) c 43F#");
-    TEST_ASSERT_EQUAL_UINT64(999999999999999999u, record.stamp_us);
-    parse_bad("(1000000000000.000000) c 43F#", "number of seconds");
-}
-
-void test_what_is_no_time_stamp(void) {
-    parse_bad("", "does not begin");
-    parse_bad("1.000000 c 43F#", "does not begin");
-    parse_bad(" (1.000000) c 43F#", "does not begin");
-    parse_bad("(", "number of seconds");
-    parse_bad("(-1.000000) c 43F#", "number of seconds");
-    parse_bad("(+1.000000) c 43F#", "number of seconds");
-    parse_bad("(.000000) c 43F#", "number of seconds");
-    parse_bad("(1) c 43F#", "number of seconds");
-    parse_bad("(1,000000) c 43F#", "number of seconds");
-    parse_bad("(1.) c 43F#", "decimals");
-    parse_bad("(1.00000) c 43F#", "decimals");
-    parse_bad("(1.0000000) c 43F#", "decimals");
-    parse_bad("(1.00000000) c 43F#", "decimals");
-    parse_bad("(1.0000000000) c 43F#", "decimals");
-    parse_bad("(1.00000x) c 43F#", "decimals");
-    parse_bad("(1.000000 c 43F#", "parenthesis");
-    parse_bad("(1.000000)c 43F#", "parenthesis");
-    parse_bad("(1.000000)", "parenthesis");
-    parse_bad("(2026-11-21 12:00:00.000000) c 43F#", "number of seconds");
+    static const struct {
+        const char *text;
+        uint64_t us;
+    } rows[] = {
+        {"(0.000000) c 43F#", 0},
+        {"(0000000001.500000) c 43F#", 1500000},
+        {"(000000000001.000002) c 43F#", 1000002},
+        {"(12.345678999) c 43F#", 12345678}, /* nanoseconds are rounded down */
+        {"(999999999999.999999) c 43F#", 999999999999999999},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        parse_good(rows[i].text);
+        TEST_ASSERT_EQUAL_UINT64(rows[i].us, record.stamp_us);
+    }
 }
 
 void test_interfaces(void) {
@@ -179,12 +128,6 @@ void test_interfaces(void) {
     parse_good("(1.000000)    can0 43F#"); /* candump aligns names to the right */
     TEST_ASSERT_EQUAL_UINT(4, record.interface_length);
     TEST_ASSERT_EQUAL_MEMORY("can0", record.interface, 4);
-    parse_bad("(1.000000) 1234567890123456 43F#", "longer than 15");
-    parse_bad("(1.000000) ", "the interface name is missing");
-    parse_bad("(1.000000) can0", "the interface name is missing");
-    parse_bad("(1.000000) can\xC3\xA4 43F#", "the interface name is missing");
-    parse_bad("(1.000000) can\t0 43F#", "the interface name is missing");
-    parse_bad("(1.000000) can0  43F#", "a hexadecimal identifier followed by # is missing");
 }
 
 void test_a_record_is_from_one_interface(void) {
@@ -196,34 +139,46 @@ void test_a_record_is_from_one_interface(void) {
     TEST_ASSERT_FALSE(candump_is_from(&record, NULL));
 }
 
-void test_identifiers(void) {
-    parse_bad("(1.000000) c 800#", "above 7FF");
-    parse_bad("(1.000000) c FFF#", "above 7FF");
-    parse_bad("(1.000000) c 40000000#", "above 1FFFFFFF");
-    parse_bad("(1.000000) c 80000000#", "above 1FFFFFFF");
-    parse_bad("(1.000000) c E0000004#", "above 1FFFFFFF");
-    parse_bad("(1.000000) c #00", "neither 3 nor 8");
-    parse_bad("(1.000000) c 3F#00", "neither 3 nor 8");
-    parse_bad("(1.000000) c 043F#00", "neither 3 nor 8");
-    parse_bad("(1.000000) c 00123#81:00:12345678#11", "CAN XL");
-    parse_bad("(1.000000) c 00000043F#00", "neither 3 nor 8");
-    parse_bad("(1.000000) c 000000000043F#00", "a hexadecimal identifier followed by # is missing");
-    parse_bad("(1.000000) c 43G#00", "a hexadecimal identifier followed by # is missing");
-    parse_bad("(1.000000) c 43F", "a hexadecimal identifier followed by # is missing");
-    parse_bad("(1.000000) c ", "a hexadecimal identifier followed by # is missing");
-}
-
-void test_data(void) {
-    parse_bad("(1.000000) c 43F#0", "odd number");
-    parse_bad("(1.000000) c 43F#001", "odd number");
-    parse_bad("(1.000000) c 43F#0 R", "odd number");
-    parse_bad("(1.000000) c 43F#0G", "the data is not hexadecimal");
-    parse_bad("(1.000000) c 43F#0Z00", "the data is not hexadecimal");
-    parse_bad("(1.000000) c 43F#00.11", "after the frame");
-    parse_bad("(1.000000) c 43F#G0", "after the frame");
-    parse_bad("(1.000000) c 43F#00#", "after the frame");
-    parse_bad("(1.000000) c 43F#r", "after the frame");
-    parse_bad("DROPCOUNT: dropped 1 CAN frame on 'can0' socket (total drops 1)", "does not begin");
+void test_what_is_no_line(void) {
+    static const struct {
+        const char *said;
+        const char *const lines[20];
+    } rows[] = {
+        {"does not begin",
+         {"", "1.000000 c 43F#", " (1.000000) c 43F#",
+          "DROPCOUNT: dropped 1 CAN frame on 'can0' socket (total drops 1)"}},
+        {"number of seconds",
+         {"(", "(-1.000000) c 43F#", "(+1.000000) c 43F#", "(.000000) c 43F#", "(1) c 43F#", "(1,000000) c 43F#",
+          "(2026-11-21 12:00:00.000000) c 43F#", "(1000000000000.000000) c 43F#"}},
+        {"decimals",
+         {"(1.) c 43F#", "(1.00000) c 43F#", "(1.0000000) c 43F#", "(1.00000000) c 43F#", "(1.0000000000) c 43F#",
+          "(1.00000x) c 43F#"}},
+        {"parenthesis", {"(1.000000 c 43F#", "(1.000000)c 43F#", "(1.000000)"}},
+        {"longer than 15", {"(1.000000) 1234567890123456 43F#"}},
+        {"the interface name is missing",
+         {"(1.000000) ", "(1.000000) can0", "(1.000000) can\xC3\xA4 43F#", "(1.000000) can\t0 43F#"}},
+        {"a hexadecimal identifier followed by # is missing", {"(1.000000) can0  43F#"}},
+        {"longer than 8 bytes", {F "7FF#0123456789ABCDEF01"}},
+        {"above 7FF", {F "800#", F "FFF#"}},
+        {"above 1FFFFFFF", {F "40000000#", F "80000000#", F "E0000004#"}},
+        {"neither 3 nor 8", {F "#00", F "3F#00", F "043F#00", F "00000043F#00"}},
+        {"CAN XL", {F "00123#81:00:12345678#11"}},
+        {"a hexadecimal identifier followed by # is missing", {F "000000000043F#00", F "43G#00", F "43F", F ""}},
+        {"odd number", {F "43F#0", F "43F#001", F "43F#0 R", F "43F##10"}},
+        {"the data is not hexadecimal", {F "43F#0G", F "43F#0Z00"}},
+        {"flags", {F "43F##", F "43F##G"}},
+        {"not CAN FD", {F "20000004##000"}},
+        {"after the frame",
+         {F "43F#00.11", F "43F#G0", F "43F#00#", F "43F#r", F "43F#00 X", F "43F#00  R", F "43F#00 RT", F "43F#00\r\r",
+          F "43F#00\rR", F "43F#00 ", F "43F#R9", F "43F#R7_9", F "43F#R00", F "20000004#R",
+          F "43F##10011223344556677_9", F "43F#0011223344556677_8", F "43F#0011223344556677_G",
+          F "43F#0011223344556677_", F "43F#00112233445566_9"}},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        for (const char *const *line = rows[i].lines; *line != NULL; line++) {
+            parse_bad(*line, rows[i].said);
+        }
+    }
 }
 
 void test_a_nul_byte_is_no_end(void) {

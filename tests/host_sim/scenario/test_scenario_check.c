@@ -50,16 +50,12 @@ static void frame_at(uint64_t t_ms, uint32_t id, uint8_t byte0, uint8_t length) 
     scenario_check_frame(&check, (t_ms * 1000u) + 999u, HAL_CAN_VEHICLE, SCENARIO_FROM_SUPERVISOR, &frame);
 }
 
-/* The run is over; this is the one failure (NULL: there is none). */
+/* The run is over; this is the one failure (NULL: there is none). Another run with these expectations begins. */
 static void expect_failure(const char *failure) {
     scenario_check_finish(&check, &counters);
-    if (failure == NULL) {
-        TEST_ASSERT_EQUAL_STRING("", check.failures[0]);
-        TEST_ASSERT_EQUAL_size_t(0u, check.failure_count);
-    } else {
-        TEST_ASSERT_EQUAL_STRING(failure, check.failures[0]);
-        TEST_ASSERT_EQUAL_size_t(1u, check.failure_count);
-    }
+    TEST_ASSERT_EQUAL_STRING((failure != NULL) ? failure : "", check.failures[0]);
+    TEST_ASSERT_EQUAL_size_t((failure != NULL) ? 1u : 0u, check.failure_count);
+    scenario_check_init(&check, &scenario);
 }
 
 #define TWO_STATES "  states: [{to: INIT, at_ms: 0}, {to: TRIPPED, reason: BUS_OFF, at_ms: [5, 9]}]\n"
@@ -101,80 +97,67 @@ void test_a_state_that_nobody_expects(void) {
     expect_failure("no further change of state is expected, but at 0 ms: INIT (no reason)");
 }
 
-void test_a_frame_in_its_time(void) {
-    expect(NO_STATES "  frames: [{id: 168h, bytes: \"08\", at_ms: [10, 20]}]\n");
-    frame_at(9u, 0x168u, 0x08u, 1u);
-    frame_at(20u, 0x168u, 0x08u, 1u);
-    expect_failure(NULL);
-}
+#define GEAR_P "  frames: [{id: 168h, bytes: \"08\", at_ms: [10, 20]}]\n"
+#define FIRST "  frames: [{id: 168h, bytes: \"08\", at_ms: [10, 20], first_since_ms: 5}]\n"
+#define EVERY "  frames: [{id: 168h, at_ms: [0, 1000], every_ms: 100, jitter_ms: 1}]\n"
 
-void test_a_frame_too_late_with_other_bytes_or_of_another_length(void) {
-    expect(NO_STATES "  frames: [{id: 168h, bytes: \"08\", at_ms: [10, 20]}]\n");
-    frame_at(15u, 0x168u, 0x04u, 1u);
-    frame_at(15u, 0x168u, 0x08u, 2u);
-    frame_at(15u, 0x169u, 0x08u, 1u);
-    frame_at(21u, 0x168u, 0x08u, 1u);
-    expect_failure("line 6: 168h [08] is expected at least once in 10..20 ms, seen: 0 (one at 21 ms)");
-}
-
-void test_a_frame_without_bytes(void) {
-    expect(NO_STATES "  frames: [{id: 168h, bytes: \"\", at_ms: 10}]\n");
-    frame_at(10u, 0x168u, 0x08u, 1u);
-    expect_failure("line 6: 168h [] is expected at least once at 10 ms, seen: 0");
-}
-
-void test_a_frame_that_is_forbidden_without_an_end(void) {
-    expect(NO_STATES "  never: [{id: 168h}]\n");
-    frame_at(20u, 0x168u, 0x01u, 1u);
-    expect_failure("line 6: a frame is forbidden in the whole run, seen: 168h [01] at 20 ms");
-}
-
-void test_the_first_frame_since_a_moment(void) {
-    expect(NO_STATES "  frames: [{id: 168h, bytes: \"08\", at_ms: [10, 20], first_since_ms: 5}]\n");
-    frame_at(4u, 0x168u, 0x01u, 1u);
-    frame_at(10u, 0x168u, 0x08u, 1u);
-    frame_at(11u, 0x168u, 0x01u, 1u);
-    expect_failure(NULL);
-    expect(NO_STATES "  frames: [{id: 168h, bytes: \"08\", at_ms: [10, 20], first_since_ms: 5}]\n");
-    frame_at(9u, 0x168u, 0x08u, 1u);
-    frame_at(10u, 0x168u, 0x08u, 1u);
-    expect_failure("line 6: 168h [08] is expected as the first in 10..20 ms, seen: 168h [08] at 9 ms");
-    expect(NO_STATES "  frames: [{id: 168h, bytes: \"08\", at_ms: [10, 20], first_since_ms: 5}]\n");
-    frame_at(10u, 0x168u, 0x01u, 1u);
-    frame_at(11u, 0x168u, 0x08u, 1u);
-    expect_failure("line 6: 168h [08] is expected as the first in 10..20 ms, seen: 168h [01] at 10 ms");
-}
-
-void test_a_number_of_frames(void) {
-    expect(NO_STATES "  frames: [{id: 168h, at_ms: [10, 20], count: [2, 3]}]\n");
-    for (unsigned i = 0u; i < 4u; i++) {
-        frame_at(15u, 0x168u, 0x08u, 8u);
+void test_frames(void) {
+    static const struct {
+        const char *expected;
+        struct {
+            uint32_t t_ms;
+            uint32_t id;
+            uint8_t byte0;
+            uint8_t length; /* 0: no frame */
+        } frames[4];
+        const char *failure;
+    } rows[] = {
+        {GEAR_P, {{9, 0x168, 8, 1}, {20, 0x168, 8, 1}}, NULL},
+        {GEAR_P, /* too late, with other bytes, of another length */
+         {{15, 0x168, 4, 1}, {15, 0x168, 8, 2}, {15, 0x169, 8, 1}, {21, 0x168, 8, 1}},
+         "168h [08] is expected at least once in 10..20 ms, seen: 0 (one at 21 ms)"},
+        {"  frames: [{id: 168h, bytes: \"\", at_ms: 10}]\n",
+         {{10, 0x168, 8, 1}},
+         "168h [] is expected at least once at 10 ms, seen: 0"},
+        {FIRST, {{4, 0x168, 1, 1}, {10, 0x168, 8, 1}, {11, 0x168, 1, 1}}, NULL},
+        {FIRST,
+         {{9, 0x168, 8, 1}, {10, 0x168, 8, 1}},
+         "168h [08] is expected as the first in 10..20 ms, seen: 168h [08] at 9 ms"},
+        {FIRST,
+         {{10, 0x168, 1, 1}, {11, 0x168, 8, 1}},
+         "168h [08] is expected as the first in 10..20 ms, seen: 168h [01] at 10 ms"},
+        {"  frames: [{id: 168h, at_ms: [10, 20], count: [2, 3]}]\n",
+         {{15, 0x168, 8, 8}, {15, 0x168, 8, 8}, {15, 0x168, 8, 8}, {15, 0x168, 8, 8}},
+         "168h is expected 2..3 times in 10..20 ms, seen: 4"},
+        {EVERY,
+         {{50, 0x168, 8, 8}, {148, 0x168, 8, 8}},
+         "168h is expected every 100 ms, seen: 98 ms after the previous one at 50 ms"},
+        {EVERY, {{50, 0x168, 8, 8}}, "168h is expected every 100 ms in 0..1000 ms, the last one was at 50 ms"},
+        {"  never: [{id: 168h}]\n",
+         {{20, 0x168, 1, 1}},
+         "a frame is forbidden in the whole run, seen: 168h [01] at 20 ms"},
+        {"  never: [{id: 168h, bytes: \"01 ..\", at_ms: [10, 20]}]\n",
+         {{9, 0x168, 1, 2}, {15, 0x168, 8, 2}, {20, 0x168, 1, 2}, {20, 0x168, 1, 2}},
+         "a frame is forbidden in 10..20 ms, seen: 168h [01 00] at 20 ms"},
+    };
+    for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
+        char text[200];
+        (void)snprintf(text, sizeof text, NO_STATES "%s", rows[i].expected);
+        expect(text);
+        for (size_t k = 0u; (k < 4u) && (rows[i].frames[k].length > 0u); k++) {
+            frame_at(rows[i].frames[k].t_ms, rows[i].frames[k].id, rows[i].frames[k].byte0, rows[i].frames[k].length);
+        }
+        (void)snprintf(text, sizeof text, "line 6: %s", (rows[i].failure != NULL) ? rows[i].failure : "");
+        expect_failure((rows[i].failure != NULL) ? text : NULL);
     }
-    expect_failure("line 6: 168h is expected 2..3 times in 10..20 ms, seen: 4");
 }
 
 void test_a_period(void) {
-    expect(NO_STATES "  frames: [{id: 168h, at_ms: [0, 1000], every_ms: 100, jitter_ms: 1}]\n");
+    expect(NO_STATES EVERY);
     for (unsigned t = 50u; t <= 1000u; t += 101u) {
         frame_at(t, 0x168u, 0x08u, 8u);
     }
     expect_failure(NULL);
-    expect(NO_STATES "  frames: [{id: 168h, at_ms: [0, 1000], every_ms: 100, jitter_ms: 1}]\n");
-    frame_at(50u, 0x168u, 0x08u, 8u);
-    frame_at(148u, 0x168u, 0x08u, 8u);
-    expect_failure("line 6: 168h is expected every 100 ms, seen: 98 ms after the previous one at 50 ms");
-    expect(NO_STATES "  frames: [{id: 168h, at_ms: [0, 1000], every_ms: 100, jitter_ms: 1}]\n");
-    frame_at(50u, 0x168u, 0x08u, 8u);
-    expect_failure("line 6: 168h is expected every 100 ms in 0..1000 ms, the last one was at 50 ms");
-}
-
-void test_a_frame_that_must_not_be(void) {
-    expect(NO_STATES "  never: [{id: 168h, bytes: \"01 ..\", at_ms: [10, 20]}]\n");
-    frame_at(9u, 0x168u, 0x01u, 2u);
-    frame_at(15u, 0x168u, 0x08u, 2u);
-    frame_at(20u, 0x168u, 0x01u, 2u);
-    frame_at(20u, 0x168u, 0x01u, 2u);
-    expect_failure("line 6: a frame is forbidden in 10..20 ms, seen: 168h [01 00] at 20 ms");
 }
 
 void test_frames_of_others_do_not_count(void) {
@@ -195,10 +178,8 @@ void test_changes_of_the_safety_output(void) {
     scenario_check_output(&check, 4u, false);
     scenario_check_output(&check, 5u, true);
     expect_failure(NULL);
-    expect(NO_STATES "  safety_output: [{closed: true, at_ms: 5}]\n");
     scenario_check_output(&check, 6u, true);
     expect_failure("line 6: safety output closed is expected at 5 ms, seen: closed at 6 ms");
-    expect(NO_STATES "  safety_output: [{closed: true, at_ms: 5}]\n");
     expect_failure("line 6: safety output closed is expected at 5 ms, not seen");
     expect(NO_STATES);
     scenario_check_output(&check, 6u, true);
@@ -245,7 +226,6 @@ void test_the_parts_that_failed_their_test(void) {
     expect(text);
     event(5u, AGV_EVENT_FAULT, AGV_FAULT_SELF_TEST_FAILED, AGV_CLASS_TRIP, 1u, HAL_SELF_TEST_RAM | HAL_SELF_TEST_CORE);
     expect_failure(NULL);
-    expect(text);
     event(5u, AGV_EVENT_FAULT, AGV_FAULT_SELF_TEST_FAILED, AGV_CLASS_TRIP, 1u, HAL_SELF_TEST_RAM);
     expect_failure("line 6: SELF_TEST_FAILED [ram, core] is expected to be raised at 5 ms, seen: [ram] at 5 ms");
 }
@@ -255,7 +235,6 @@ void test_no_other_faults(void) {
     event(5u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1u, 0u);
     event(6u, AGV_EVENT_FAULT, AGV_FAULT_RX_OVERRUN, AGV_CLASS_WARN, 1u, 0u);
     expect_failure("no other fault is expected, but at 6 ms: RX_OVERRUN (warn)");
-    expect(NO_STATES "  faults: [{name: BUS_OFF, raised_ms: 5}]\n  other_faults: never\n");
     event(5u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1u, 0u);
     event(6u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1u, 0u); /* a second time */
     expect_failure("no other fault is expected, but at 6 ms: BUS_OFF (trip)");
@@ -278,7 +257,6 @@ void test_resets_and_what_is_missing_at_start(void) {
     expect(NO_STATES "  startup: [{missing: [messages], at_ms: 6}]\n");
     event(7u, AGV_EVENT_STARTUP, 0u, 0u, 0u, AGV_MISSING_MESSAGES);
     expect_failure("line 6: missing at start [messages] is expected at 6 ms, seen: [messages] at 7 ms");
-    expect(NO_STATES "  startup: [{missing: [messages], at_ms: 6}]\n");
     expect_failure("line 6: missing at start [messages] is expected at 6 ms, not seen");
     expect(NO_STATES);
     event(7u, AGV_EVENT_STARTUP, 0u, 0u, 0u, AGV_MISSING_STATE);
@@ -306,7 +284,6 @@ void test_counters_at_the_end(void) {
     counters.rejected[AGV_REJECTED_REMOTE] = 2u;
     expect_failure(NULL);
     counters.rejected[AGV_REJECTED_REMOTE] = 3u;
-    expect(NO_STATES "  counters_at_end: {sent: 3, rejected_remote: [1, 2]}\n");
     expect_failure("line 6: counter rejected_remote: 1..2 is expected at the end, seen: 3");
 }
 
