@@ -60,7 +60,7 @@ def results_folder(key):
 
 def try_all(wanted, at, out, arguments):
     """Append a result a mutant to the open file."""
-    equivalents = read_equivalents(arguments.equivalents, {mutant.id for mutant in wanted}, [])
+    equivalents = read_equivalents({mutant.id for mutant in wanted}, [])
     counts = collections.Counter()
     for number, mutant in enumerate(wanted, 1):
         begin = time.monotonic()
@@ -113,10 +113,10 @@ def command_try(arguments):
             print(f"{key}  {found[key].text!r}  {' '.join(map(str, at.try_mutant(found[key])))}", flush=True)
 
 
-def read_equivalents(path, found, problems):
-    """The ids that the file lists, each with an argument behind it."""
+def read_equivalents(found, problems):
+    """The ids that the file equivalents lists, each with an argument behind it."""
     listed = []
-    for line in path.read_text(encoding="utf-8").splitlines():
+    for line in (HERE / "equivalents").read_text(encoding="utf-8").splitlines():
         key, _, argument = line.partition(" ")
         if not key or key.startswith("#"):
             continue
@@ -184,7 +184,7 @@ def command_merge(arguments):
     paths = [pathlib.Path(name) for name in arguments.names] or sorted(folder.glob("*.jsonl"))
     found = {mutant.id: mutant for mutant in all_mutants()}
     problems = []
-    equivalents = read_equivalents(arguments.equivalents, found, problems)
+    equivalents = read_equivalents(found, problems)
     verdicts = judge(found, read_results(paths), equivalents, problems)
     table(found, verdicts)
     for key, verdict in verdicts.items():
@@ -204,7 +204,7 @@ def command_merge(arguments):
 def command_rows(arguments):
     wanted = subprocess.run([bench.ROOT / "scripts/tools/traceability.py"], stdout=subprocess.PIPE, check=True, text=True).stdout
     with open_bench(arguments) as at:
-        return rows.check(at, arguments.rows, rows.read_shown(wanted), arguments.names)
+        return rows.check(at, HERE / "rows", rows.read_shown(wanted), arguments.names)
 
 
 def main():
@@ -216,8 +216,6 @@ def main():
     parser.add_argument("--shard", default="1/1", metavar="i/n")
     parser.add_argument("--quick", action="store_true", help="only the quick tests: what they do not kill stays open")
     parser.add_argument("--without", action="append", default=[], metavar="TEST", help="leave out a test program")
-    parser.add_argument("--equivalents", type=pathlib.Path, default=HERE / "equivalents", help="another such file")
-    parser.add_argument("--rows", type=pathlib.Path, default=HERE / "rows", help="another such file")
     parser.add_argument("--record", action="store_true", help="merge: write figures.tsv, if nothing failed")
     parser.add_argument("--results", type=pathlib.Path, help="folder of the results, instead of one named by the sources")
     arguments = parser.parse_intermixed_args()
