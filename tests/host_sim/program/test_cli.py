@@ -1,6 +1,7 @@
 """The program's front: commands, options, exit status, one line for what is wrong."""
 import os
 import pathlib
+import random
 import re
 import subprocess
 import unittest
@@ -85,6 +86,23 @@ class Front(hostsim.Case):
     def test_a_very_long_name_is_one_line(self):
         self.assert_refused(self.run_program("x" * 100000), "'xxx")
         self.assert_refused(self.run_program("replay", "x" * 100000), "xxx")
+
+    def test_random_options(self):
+        chance = random.Random(6)
+        self.write("log", traffic.log(traffic.frames(5)))
+        words = ["replay", "config", "--out", "--events", "--tail", "--start-ms", "--skip-bad-lines", "--ai-if",
+                 "--reset-cause", "--store", "--config", "--topology", "--id-set", "--shadow", "--help", "--to-kconfig",
+                 "log", "-", "--", "", "1", "gateway", "shared", "table", "watchdog", "can0", "=", "--tail=5", "-x", "o1",
+                 "--out=o2", "--start-ms=4294967295", "\n", "%n"]
+        for _ in range(100):
+            arguments = ["replay"] * chance.randrange(2) + chance.choices(words, k=chance.randrange(7))
+            result = self.run_program(*arguments)
+            self.assertIn(result.status, (0, 2), arguments)
+            if result.status == 2:
+                self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+            for name in self.files():
+                if name != "log":
+                    (self.folder / name).unlink()
 
 
 class Examples(hostsim.Case):
