@@ -49,6 +49,7 @@ ROWS = {
         ("--runs 3 --seed 1 --show 1 --shard 1/2", "--show prints one run"),
         ("--runs 3 --seed 1 --broken nowhere", "'nowhere' is not a folder"),
         ("--runs 3 --seed 1 --broken /proc", "--broken: the folder '/proc' cannot be written: "),
+        ("--runs 3 --seed 1 --why a --results a", "are the same file"),
         ("--runs 3 --seed 1 --results no/where", "no/where: "),
         ("--runs 3 --seed 1 file", "unexpected argument 'file'; only --merge takes files"),
         ("--merge", "--merge: FILE is missing"),

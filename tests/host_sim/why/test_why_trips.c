@@ -1,7 +1,4 @@
-/* Trips, states and faults over a run, and the table of kinds. */
-#include <stdio.h>
-
-#include "agv/names.h"
+/* Trips, states and faults over a run. The kind of each fault that a campaign causes: program/logs/why_campaign.py. */
 #include "one_why.h"
 
 void test_how_long_each_state_lasted(void) {
@@ -206,6 +203,7 @@ void test_a_bit_that_does_not_count_has_not_begun(void) {
 void test_the_limit_of_moving_while_safe_is_no_setting(void) {
     feed_trip(why, AGV_FAULT_EMERGENCY_STOP, 2000);
     feed_fault(why, AGV_FAULT_MOVING_WHILE_SAFE, AGV_CLASS_TRIP, true, 7000);
+    TEST_ASSERT_EQUAL(WHY_VEHICLE, why_trip(why, 1)->kind);
     TEST_ASSERT_EQUAL_INT64(200, why_trip(why, 1)->limit);
     TEST_ASSERT_EQUAL_STRING("ms", why_trip(why, 1)->unit);
 }
@@ -216,41 +214,4 @@ void test_more_trips_than_fit_are_left_out(void) {
         feed_state(why, AGV_STATE_SAFE, AGV_STATE_STANDBY, AGV_FAULT_NONE, (i * 10) + 5);
     }
     TEST_ASSERT_EQUAL_UINT(1000, why_trip_count(why));
-}
-
-/* Written by hand from the requirements. */
-void test_the_kinds(void) {
-    static const struct {
-        agv_fault_t fault;
-        const char *kind;
-    } expected[] = {
-        {AGV_FAULT_STEERING_COMMAND_TIMEOUT, "silence"},
-        {AGV_FAULT_AI_HEARTBEAT_LOST, "silence"},
-        {AGV_FAULT_VCU_HEARTBEAT_STUCK, "stuck"},
-        {AGV_FAULT_S_DRIVER_ALARM, "bit"},
-        {AGV_FAULT_EPS_MODE_OFF, "score"},
-        {AGV_FAULT_EPS_OVER_VOLTAGE, "score"},
-        {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, "value"},
-        {AGV_FAULT_GEAR_DEVIATION, "budget"},
-        {AGV_FAULT_SPEED_IMPLAUSIBLE, "budget"},
-        {AGV_FAULT_THROTTLE_IN_PARK, "budget"},
-        {AGV_FAULT_MODE_NONE, "mode"},
-        {AGV_FAULT_MODE_FLAPPING, "mode"},
-        {AGV_FAULT_FOREIGN_COMMAND_SENDER, "intrusion"},
-        {AGV_FAULT_COMMAND_TOO_FAST, "intrusion"},
-        {AGV_FAULT_STATUS_ID_IN_USE, "intrusion"},
-        {AGV_FAULT_TX_STALLED, "bus"},
-        {AGV_FAULT_AI_BUS_OFF, "bus"},
-        {AGV_FAULT_MOVING_WHILE_SAFE, "vehicle"},
-        {AGV_FAULT_OUTPUT_FEEDBACK, "hardware"},
-        {AGV_FAULT_EMERGENCY_STOP, "hardware"},
-        {AGV_FAULT_CLOCK_DEVIATION, "hardware"},
-        {AGV_FAULT_STEP_OVERRUN, "own"},
-        {AGV_FAULT_STARTUP_TIMEOUT, "own"},
-        {AGV_FAULT_SUPERVISOR_RESET, "own"},
-    };
-    for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++) {
-        TEST_ASSERT_EQUAL_STRING_MESSAGE(expected[i].kind, why_kind_name(why_row(expected[i].fault)->kind),
-                                         agv_fault_name(expected[i].fault));
-    }
 }
