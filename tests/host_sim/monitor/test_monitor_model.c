@@ -183,17 +183,6 @@ void test_a_counter_that_stands_still(void) {
     TEST_ASSERT_EQUAL(1, said("363h vehicle_status counts again after 70 ms"));
 }
 
-void test_an_incrementing_counter_that_jumps_is_stuck(void) {
-    end();
-    settings.vcu_counter = AGV_COUNTER_INCREMENTS;
-    begin(false, false);
-    frame(VEHICLE, 0, 0x363, "0000000000000001");
-    frame(VEHICLE, 20, 0x363, "0000000000000011");
-    frame(VEHICLE, 40, 0x363, "0000000000000021");
-    frame(VEHICLE, 60, 0x363, "0000000000000031");
-    TEST_ASSERT_TRUE(row_of(VEHICLE, 0x363)->is_stuck);
-}
-
 void test_words_that_change_are_listed_numbers_are_not(void) {
     frame(VEHICLE, 10, 0x363, MANUAL);
     frame(VEHICLE, 20, 0x363, AUTOPILOT);

@@ -135,17 +135,6 @@ void test_a_heartbeat_is_a_changed_counter(void) {
     TEST_ASSERT_EQUAL_UINT64(2, entry->counter->repeats);
 }
 
-void test_a_jump_of_an_incrementing_counter_is_no_heartbeat(void) {
-    config.eps_counter = AGV_COUNTER_INCREMENTS;
-    restart();
-    feed(0, 0x067, 0x0100000000000000);
-    feed(10 * MS, 0x067, 0x0900000000000000); /* by 8 */
-    feed(20 * MS, 0x067, 0x0A00000000000000); /* right, but only the second one counts */
-    feed(30 * MS, 0x067, 0x0B00000000000000);
-    traffic_end(traffic, 30 * MS);
-    TEST_ASSERT_EQUAL_UINT64(30 * MS, traffic_message(traffic, AGV_MSG_STEERING_STATUS)->watch->gaps.longest_us);
-}
-
 static counter_kind_t kind_of_steps(uint8_t step, unsigned frames) {
     counter_use_t use = {0};
     for (unsigned i = 0; i < frames; i++) {
