@@ -66,29 +66,29 @@ static void change_message(input_t *input, unsigned how) {
 static void change_vehicle(unsigned how) {
     switch (how & 7u) {
     case 0:
-        testbed_heal();
+        traffic_heal(testbed.traffic);
         break;
     case 1: /* on autopilot */
-        testbed_mode(0x80);
-        testbed_gear(1);
-        testbed_wheels(200);
+        traffic_mode(testbed.traffic, 0x80);
+        traffic_gear(testbed.traffic, 1);
+        traffic_wheels(testbed.traffic, 200, 200);
         break;
     case 2: /* obeys */
-        testbed_mode(0x40);
-        testbed_gear(8);
-        testbed_wheels(0);
+        traffic_mode(testbed.traffic, 0x40);
+        traffic_gear(testbed.traffic, 8);
+        traffic_wheels(testbed.traffic, 0, 0);
         break;
     case 3:
-        testbed_button(true);
+        traffic_button(testbed.traffic, true);
         break;
     case 4:
-        testbed_button(false);
+        traffic_button(testbed.traffic, false);
         break;
     case 5:
-        testbed_mode(0xC0);
+        traffic_mode(testbed.traffic, 0xC0);
         break;
     case 6:
-        testbed_mode(0x00);
+        traffic_mode(testbed.traffic, 0x00);
         break;
     default:
         testbed.receive_path_dead = (how & 8u) != 0u;

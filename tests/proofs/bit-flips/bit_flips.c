@@ -84,11 +84,11 @@ static void judge_found(void) {
 
 /* Fulfil all conditions of a reset: the vehicle obeys, and the operator presses the button. */
 static void ask_for_reset(void) {
-    testbed_mode(MODE_MANUAL);
-    testbed_gear(GEAR_P);
-    testbed_wheels(0);
+    traffic_mode(testbed.traffic, MODE_MANUAL);
+    traffic_gear(testbed.traffic, GEAR_P);
+    traffic_wheels(testbed.traffic, 0, 0);
     testbed.traffic[M_THROTTLE_STATUS].data[0] = 0;
-    testbed_button(true);
+    traffic_button(testbed.traffic, true);
 }
 
 static void run_found(uint32_t ms) {
@@ -111,14 +111,14 @@ static void follow(unsigned bit) {
         if (for_long) {
             ask_for_reset();
             run_found(LONG_MS);
-            testbed_button(false);
+            traffic_button(testbed.traffic, false);
             run_found(SHORT_MS);
         }
         return;
     }
     sum.harmless++;
     testbed_run(LONG_MS);
-    testbed_button(false); /* a press counts at its release */
+    traffic_button(testbed.traffic, false); /* a press counts at its release */
     testbed_run(SHORT_MS);
 }
 
@@ -162,7 +162,7 @@ static void load(unsigned variant, unsigned state) {
         judge_sent = testbed.hal.sink;
         testbed.hal.sink = on_sent;
     }
-    testbed_ai_drives();
+    traffic_ai_drives(testbed.traffic);
     testbed_run(30);
 }
 
@@ -216,14 +216,14 @@ static void flip_after_a_restart(unsigned variant, unsigned state) {
 /* The button is held since before the trip. Only a flipped bit could turn this into a valid press. */
 static void flip_while_the_button_is_held(unsigned variant) {
     load(variant, 2);
-    testbed_button(true);
+    traffic_button(testbed.traffic, true);
     testbed_run(50);
     testbed.traffic[M_VEHICLE].data[4] = 0x80;
     testbed_run(20);
     testbed.traffic[M_VEHICLE].data[4] = 0;
-    testbed_mode(MODE_MANUAL);
-    testbed_gear(GEAR_P);
-    testbed_wheels(0);
+    traffic_mode(testbed.traffic, MODE_MANUAL);
+    traffic_gear(testbed.traffic, GEAR_P);
+    traffic_wheels(testbed.traffic, 0, 0);
     testbed_run(900);
     flip_each_bit("the button is held since before the trip", variant, 4);
 }

@@ -192,12 +192,13 @@ const char *model_broken(void) {
 /* ---- Traffic ---- */
 
 void model_apply_defect(void) {
-    testbed_heal();
-    testbed_mode(model.mode);
-    testbed_button(model.button);
-    testbed_gear(model.gear);
-    testbed_wheels(model.wheels_turn ? (uint8_t)WHEEL_MM_S : 0u);
-    testbed_ai_drives();
+    traffic_heal(testbed.traffic);
+    traffic_mode(testbed.traffic, model.mode);
+    traffic_button(testbed.traffic, model.button);
+    traffic_gear(testbed.traffic, model.gear);
+    const int32_t mm_s = model.wheels_turn ? WHEEL_MM_S : 0;
+    traffic_wheels(testbed.traffic, mm_s, mm_s);
+    traffic_ai_drives(testbed.traffic);
     defect_apply((defect_t)model.defect);
 }
 

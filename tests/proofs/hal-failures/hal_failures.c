@@ -209,9 +209,9 @@ static void steps(const char *where, uint32_t ms) {
 /* ---- The round ---- */
 
 static void vehicle(uint8_t mode, uint8_t gear, uint8_t wheels) {
-    testbed_mode(mode);
-    testbed_gear(gear);
-    testbed_wheels(wheels);
+    traffic_mode(testbed.traffic, mode);
+    traffic_gear(testbed.traffic, gear);
+    traffic_wheels(testbed.traffic, wheels, wheels);
 }
 
 static void alarm_and_trip(void) {
@@ -223,7 +223,7 @@ static void alarm_and_trip(void) {
 
 static void round_of(unsigned variant) {
     testbed_load(variant, 0);
-    testbed_ai_drives();
+    traffic_ai_drives(testbed.traffic);
     step("power-on", RESTART_POWER_ON);
     steps("INIT and STANDBY", 650);
     vehicle(MODE_ENGAGED, GEAR_D, 200);
@@ -237,9 +237,9 @@ static void round_of(unsigned variant) {
     steps("SAFE", 150);
     step("restart in SAFE", RESTART_WATCHDOG);
     steps("after the restart", 250);
-    testbed_button(true);
+    traffic_button(testbed.traffic, true);
     steps("the button", 1050);
-    testbed_button(false);
+    traffic_button(testbed.traffic, false);
     steps("STANDBY again", 30);
     if (agv_supervisor_state(&testbed.supervisor) != AGV_STATE_STANDBY) {
         harm_note("the round does not end in STANDBY");

@@ -139,30 +139,6 @@ void testbed_run(uint32_t ms) {
     }
 }
 
-void testbed_mode(uint8_t mode) {
-    traffic_mode(testbed.traffic, mode);
-}
-
-void testbed_button(bool down) {
-    traffic_button(testbed.traffic, down);
-}
-
-void testbed_gear(uint8_t gear) {
-    traffic_gear(testbed.traffic, gear);
-}
-
-void testbed_wheels(uint8_t mm_s) {
-    traffic_wheels(testbed.traffic, mm_s, mm_s);
-}
-
-void testbed_heal(void) {
-    traffic_heal(testbed.traffic);
-}
-
-void testbed_ai_drives(void) {
-    traffic_ai_drives(testbed.traffic);
-}
-
 void testbed_disturb(hal_can_side_t side, unsigned kind, uint8_t amount) {
     switch (kind) {
     case 0:
@@ -225,7 +201,7 @@ static void begin(unsigned variant, uint32_t offset_ms) {
     testbed.ports = (agv_ports_t){.hal = &testbed.hal, .recorder = &testbed.recorder};
     configure(variant);
     traffic_address(testbed.traffic, &testbed.config);
-    testbed_heal();
+    traffic_heal(testbed.traffic);
     sim_store_init(&testbed.store);
     const bool gateway = testbed.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
     const sim_hal_config_t hal = {
@@ -247,9 +223,9 @@ static void expect_state(unsigned state) {
 static void run_to_state(unsigned state) {
     testbed_run(state == 0u ? 50 : 700);
     if (state >= 2u) {
-        testbed_mode(MODE_ENGAGED);
-        testbed_gear(GEAR_D);
-        testbed_wheels(200);
+        traffic_mode(testbed.traffic, MODE_ENGAGED);
+        traffic_gear(testbed.traffic, GEAR_D);
+        traffic_wheels(testbed.traffic, 200, 200);
         testbed_run(800);
     }
     if (state >= 3u) {
@@ -259,9 +235,9 @@ static void run_to_state(unsigned state) {
         testbed_run(40);
     }
     if (state >= 4u) {
-        testbed_mode(MODE_MANUAL);
-        testbed_gear(GEAR_P);
-        testbed_wheels(0);
+        traffic_mode(testbed.traffic, MODE_MANUAL);
+        traffic_gear(testbed.traffic, GEAR_P);
+        traffic_wheels(testbed.traffic, 0, 0);
         testbed.traffic[M_THROTTLE_STATUS].data[0] = 0;
         testbed_run(300);
     }

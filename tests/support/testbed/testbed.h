@@ -31,7 +31,7 @@ typedef struct {
     uint64_t ticked_ms; /* time of the last tick */
     uint32_t unsettled; /* ticks until a disturbance of the controller counts as over */
     bool receive_path_dead;
-    traffic_message_t traffic[TRAFFIC_MESSAGES];
+    traffic_message_t traffic[TRAFFIC_MESSAGES]; /* traffic_mode() and others set its values */
 } testbed_t;
 
 extern testbed_t testbed;
@@ -61,14 +61,6 @@ void testbed_restart(hal_reset_cause_t cause);
 
 /* Disturb the controller of a side. */
 void testbed_disturb(hal_can_side_t side, unsigned kind, uint8_t amount);
-
-/* Set values of the traffic. */
-void testbed_mode(uint8_t mode);
-void testbed_button(bool down);
-void testbed_gear(uint8_t gear);
-void testbed_wheels(uint8_t mm_s);
-void testbed_heal(void);
-void testbed_ai_drives(void);
 
 /* Whether the supervisor is latched, also by a corrupted state code; whether the cause of a fault is present. */
 bool testbed_is_latched(void);
