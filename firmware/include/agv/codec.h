@@ -8,8 +8,8 @@
  * - `agv_pack_X(data, &in)` checks every field. If all are in range, it writes all 8 bytes (reserved bits as 0, P14) and
  *   returns true. Otherwise it returns false and leaves @p data unchanged.
  * - `agv_unpack_X(&out, data)` ignores reserved bits and writes every field of @p out. It returns false if a field holds
- *   a value that the protocol does not define. That field then holds the scaled value, out of its range, and must not be
- *   used; the other fields (alive counter, fault bits) are valid.
+ *   a value that the protocol does not define. That field then contains the scaled invalid value, which must not
+ *   be used; the other fields (alive counter, fault bits) are valid.
  *
  * Requirements: P2 to P14, P18 (docs/protocol.md).
  */
@@ -107,7 +107,7 @@ typedef struct {
     int32_t angle_ddeg; /**< 0.1 degree, -9000..+9000 */
 } agv_steering_command_t;
 
-/** 363h. Every value is valid; the supervisor evaluates the case that both mode bits are set (MODE_INVALID). */
+/** 363h. Every value is valid; the supervisor evaluates the mode bits (MODE_INVALID, MODE_NONE). */
 typedef struct {
     uint16_t speed_m_per_h; /**< metres per hour, unsigned (P7) */
     uint8_t level1_alarms;  /**< AGV_VCU_ALARM_* bits; the two reserved bits are unpacked and packed as 0 */

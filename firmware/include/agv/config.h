@@ -63,10 +63,11 @@ enum {
 typedef enum {
     AGV_CONFIG_OK,
     AGV_CONFIG_OUT_OF_RANGE, /**< `setting` is below its lowest or above its highest value */
-    AGV_CONFIG_ID_TWICE, /**< `setting` is the identifier of another message, or status_frame_id is one of either ID set */
+    /** `setting` is also the identifier of another message, or status_frame_id is that of a message in either ID set */
+    AGV_CONFIG_ID_TWICE,
     AGV_CONFIG_NEEDS_GATEWAY,   /**< `setting` has no effect on a shared bus and is not at its default */
     AGV_CONFIG_PRESS_TOO_SHORT, /**< reset_hold_max_ms is not above reset_hold_ms: no press could reset */
-    AGV_CONFIG_CLASS_FIXED,     /**< the class of `fault` must be its default, always or on a shared bus */
+    AGV_CONFIG_CLASS_FIXED,     /**< the class of `fault` cannot be changed, or cannot on a shared bus */
     AGV_CONFIG_NO_SUCH_FAULT    /**< `trips` has bits beyond the last fault */
 } agv_config_problem_t;
 
@@ -91,7 +92,7 @@ bool agv_config_is_trip(const agv_config_t *config, uint32_t fault);
 
 /**
  * The identifiers of a configuration (P1). Each is the value of its setting id_...; when `id_set` is `table`, a setting
- * at its default stands for the identifier of the table.
+ * that has its default value stands for the identifier of the set `table`.
  */
 void agv_config_ids(const agv_config_t *config, agv_ids_t *ids);
 

@@ -29,7 +29,7 @@ typedef struct {
     const agv_version_t *version; /**< NULL: none is reported (status_version) */
 } agv_ports_t;
 
-/** Memory of a supervisor in bytes, the same on every platform. The core needs a little less: the rest is 0. */
+/** Memory of a supervisor in bytes, the same on every platform. The core uses slightly less; the unused bytes are 0. */
 #define AGV_SUPERVISOR_MEMORY 1016u
 
 /**
@@ -57,8 +57,8 @@ void agv_supervisor_start(agv_supervisor_t *supervisor, const agv_ports_t *ports
 /**
  * Handle a received frame. Malformed frames (P15) are counted and refresh no deadline.
  * @param side  controller that received it; on a shared bus, frames of the AI side are ignored
- * @param frame with its receive time, which may be later than the last tick. An old frame refreshes its deadline only
- *              from its own receive time.
+ * @param frame with its receive time, which may be later than the last tick. An old frame refreshes
+ *              the deadline of its message only from its receive time on.
  */
 void agv_supervisor_frame(agv_supervisor_t *supervisor, const agv_ports_t *ports, hal_can_side_t side,
                           const hal_can_frame_t *frame);
@@ -78,7 +78,7 @@ agv_state_t agv_supervisor_state(const agv_supervisor_t *supervisor);
 /** The reason of the first trip since the last reset (FSM-5); AGV_FAULT_NONE when not tripped. */
 agv_fault_t agv_supervisor_first_reason(const agv_supervisor_t *supervisor);
 
-/** The active faults: their cause is present now. */
+/** The active faults. docs/faults.md says when a fault of each kind ends. */
 agv_fault_set_t agv_supervisor_active_faults(const agv_supervisor_t *supervisor);
 
 /** The active faults that count as trips at present. */
