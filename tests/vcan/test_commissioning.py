@@ -46,7 +46,7 @@ class Checklist(unittest.TestCase):
                 self.assertNotIn("NOT SUPERVISED", done.stdout, command)
                 ran += 1
             self.assertRegex((pathlib.Path(folder) / "vehicle.conf").read_text(encoding="utf-8"), r"CONFIG_AGV_ID_SET_HEADING=y")
-        self.assertEqual(6, ran)
+        self.assertEqual(5, ran)
 
 
 if __name__ == "__main__":
