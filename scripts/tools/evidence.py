@@ -4,7 +4,7 @@ Tables that are read:
   docs/evidence.md                      claim, way and what is not shown, by hand; [`name`] in the second column is a proof of
                                         tests/proofs, or a name of figures.tsv
   tests/proofs/figures.tsv              command, date, revision and figure of a name (scripts/verify --record)
-  tests/proofs/mutation/rows            the kept change of a row: the file that is changed
+  tests/proofs/mutation/rows            the stored mutant of a row: the file that is changed
   tests/proofs/mutation/figures.tsv     mutants of a file (mutate.py merge --record), once they were all tried
   docs/hunt.md                          the rows that a hazard judges
   docs/faults.md                        the rows that a fault belongs to
@@ -88,7 +88,7 @@ def hazards(root, rows, problems):
 
 
 def mutants(root, rows, problems):
-    """Row -> file of its kept change, and what became of the mutants of this file."""
+    """Row -> file of its stored mutant, and what became of the mutants of this file."""
     counts = read_table(root, "tests/proofs/mutation/figures.tsv", 1 + len(TITLES), problems)
     cells = {}
     for line in (root / "tests/proofs/mutation/rows").read_text(encoding="ascii").splitlines():

@@ -327,12 +327,13 @@ CAUSES = {
     "contact": "{setting} ms of ticks",
     "clocks": "two comparisons of 1000 ms",
     "frame": "the frame itself",
-    "frames": "{count} x {message} of {cycle} ms",
-    "silence": "{message} away for {setting} ms",
-    "lasts": "{message} of {cycle} ms, for {setting} ms",
-    "gaps": "{setting} gaps of {highest} ms between {message}",
-    "stall": "{message} of {cycle} ms waits {setting} ms",
-    "unconfirmed": "{message} away for {timeout} ms, then {setting} ms",
+    "frames": "{count} x {message}, cycle {cycle} ms",
+    "silence": "no {message} for {setting} ms",
+    "heartbeat": "no changed counter in {message} for {setting} ms",
+    "lasts": "{message} (cycle {cycle} ms) for {setting} ms",
+    "gaps": "{setting} gaps of {highest} ms between frames of {message}",
+    "stall": "{message} (cycle {cycle} ms) waits {setting} ms",
+    "unconfirmed": "no {message} for {timeout} ms, then {setting} ms",
     "never_seen": "no {message}",
 }
 
@@ -341,7 +342,9 @@ def cause_text(tables, row):
     messages = {message["name"]: message for message in tables["messages"]}
     message = messages.get(row["message"])
     value = tables["settings"].get(row["setting"] or "", 1)
-    text = CAUSES["tick" if row["kind"] == "at_once" and "later" in row["flags"] else row["kind"]].format(
+    kind = ("tick" if row["kind"] == "at_once" and "later" in row["flags"] else
+            "heartbeat" if row["kind"] == "silence" and "_HEARTBEAT_" in row["fault"] else row["kind"])
+    text = CAUSES[kind].format(
         message=f"{message['heading_id']:03X}h" if message else "", count=value, setting=value,
         cycle=message["cycle_ms"] if message else "", highest=row["highest"],
         timeout=tables["settings"]["steering_command_timeout_ms"])
@@ -359,7 +362,7 @@ def why(derived, figures, row):
             continue
         lone = derived.without_collisions[fault, topology, bitrate]
         reasons |= {"collisions"} if lone < time else set()
-        reasons |= {"bunch"} if lone > NEAR * seen else set()
+        reasons |= {"arbitration"} if lone > NEAR * seen else set()
     return ", ".join(sorted(reasons)) or "-"
 
 

@@ -131,7 +131,7 @@ def main():
     if bad:
         fail("\n".join(bad))
     parts = [f"{counts[kind]} {PLURAL[kind]} ({excluded[kind]} excluded)" for kind in KINDS]
-    print(f"100 % of {', '.join(parts)}; {sum(decisions.values())} decisions, {decisions['several']} of several conditions")
+    print(f"100 % of {', '.join(parts)}, in {sum(decisions.values())} decisions, {decisions['several']} of several conditions")
 
 
 main()

@@ -6,7 +6,7 @@
   mutate run [--shard i/n] [FILE...]       try those that have no result yet; results are appended to a file of lines
   mutate try ID...                         try some, and tell
   mutate merge [RESULTS...]                sum up; fails below 95 % or above 5 %, or when a mutant has no result
-  mutate rows [ROW...]                     the kept changes of the file rows: each breaks its row, and a test notices
+  mutate rows [ROW...]                     the stored mutants of the file rows: each breaks its row, and a test notices
 """
 import argparse
 import collections
@@ -164,7 +164,7 @@ def sum_up(verdicts, problems):
     if share > EQUIVALENT_AT_MOST:
         problems.append(f"{share:.2f} % are equivalent, {EQUIVALENT_AT_MOST} % are allowed")
     return (f"{counted} mutants, {of['killed']} killed by an assertion ({killed:.2f} %), {of['crash']} crashed, "
-            f"{of['timeout']} timed out, {of['survived']} survived; apart: {of['equivalent']} equivalent ({share:.2f} %), "
+            f"{of['timeout']} timed out, {of['survived']} survived; not counted: {of['equivalent']} equivalent ({share:.2f} %), "
             f"{of['same']} of the same machine code, {of['compile']} that do not compile")
 
 

@@ -1,4 +1,4 @@
-"""The kept changes: one line each that breaks a row of the requirements, the protocol or the faults.
+"""The stored mutants: one line each that breaks a row of the requirements, the protocol or the faults.
 
 In the file rows an entry is
     ROW FILE
@@ -115,6 +115,6 @@ def check(at, path, shown, only=()):
             problems.append(f"{change.row}: {change.file}: '{change.new}': {what}")
     for problem in problems:
         print(f"mutate: {problem}", flush=True)
-    print(f"{len(of_core)} rows, {noticed} broken by a kept change and noticed by a test that names them, "
+    print(f"{len(of_core)} rows, {noticed} broken by a stored mutant and noticed by a test that names them, "
           f"{len(problems)} problems")
     return 1 if problems else 0
