@@ -10,7 +10,7 @@
 
 #include "hal/hal.h"
 
-/** A contact, as read now: not debounced. The core does not invert it. */
+/** The electrical state of a contact at this moment: not debounced, and not inverted by the core. */
 typedef enum { HAL_CONTACT_NONE = 0, HAL_CONTACT_OPEN = 1, HAL_CONTACT_CLOSED = 2 } hal_contact_t;
 
 /**

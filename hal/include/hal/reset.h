@@ -30,7 +30,7 @@ typedef enum {
     HAL_END_CLOCK = 8,            /**< the oscillator failed */
     HAL_END_FLASH_ECC = 9,        /**< two wrong bits in a word of the flash */
     HAL_END_RAM_PARITY = 10,      /**< a wrong bit in the RAM */
-    HAL_END_WINDOW_WATCHDOG = 11, /**< not fed in time */
+    HAL_END_WINDOW_WATCHDOG = 11, /**< not fed in time; when fed too early, it resets without this note */
     HAL_ENDS
 } hal_end_t;
 

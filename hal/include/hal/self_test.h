@@ -15,7 +15,7 @@
 #define HAL_SELF_TEST_PROCESSOR 0x04u /**< registers */
 #define HAL_SELF_TEST_WATCHDOG 0x08u  /**< the watchdog could not be started */
 #define HAL_SELF_TEST_DEVICES 0x10u   /**< a CAN controller or a pin could not be set up */
-#define HAL_SELF_TEST_CORE 0x20u      /**< the supervisor's codec and gate contradict each other */
+#define HAL_SELF_TEST_CORE 0x20u      /**< the supervisor's own test of codec and gate failed */
 #define HAL_SELF_TEST_SUPPLY 0x40u    /**< the brown-out level is below the one that the build asks for */
 
 /**

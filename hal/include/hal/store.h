@@ -1,6 +1,6 @@
 /**
  * @file store.h
- * Storage that survives a reset: the latch record, in RAM that a reset does not clear (but a power-on may), and a log
+ * Storage that outlives a reset: the latch record, in RAM that a reset does not clear (but a power-on may), and a log
  * of the flight recorder's events in flash. The core never passes NULL pointers. Stored bytes may be read back corrupt:
  * the caller adds its own checksum.
  */

@@ -1,6 +1,7 @@
 /**
  * @file watchdog.h
- * The hardware watchdog. The port starts it at boot with the configured period (default 100 ms) and cannot stop it.
+ * The hardware watchdog. The port starts it at boot with the configured period (default 100 ms). Nothing can stop it
+ * afterwards.
  */
 #ifndef HAL_WATCHDOG_H
 #define HAL_WATCHDOG_H
