@@ -105,7 +105,6 @@ static int send(const struct device *device, const struct can_frame *frame, k_ti
         return (bus->send_error != 0) ? bus->send_error : -EINVAL; /* the caller must not wait */
     }
     bus->sent[bus->sent_count % FAKE_SENT_MAX] = *frame;
-    bus->sent_ms[bus->sent_count % FAKE_SENT_MAX] = k_uptime_get_32();
     bus->sent_count++;
     bus->sent_callback = callback;
     bus->sent_data = data;
@@ -216,7 +215,6 @@ uint32_t fake_watchdog_ms;
 bool fake_watchdog_started;
 fake_window_watchdog_t fake_window_watchdog;
 
-#if DT_HAS_COMPAT_STATUS_OKAY(agv_test_watchdog)
 static bool is_window(const struct device *device) {
     return device == DEVICE_DT_GET(DT_NODELABEL(test_window_watchdog));
 }
@@ -271,7 +269,6 @@ static const struct wdt_driver_api watchdog_api = {
 #define WATCHDOG(node)                                                                                                 \
     DEVICE_DT_DEFINE(node, NULL, NULL, NULL, NULL, POST_KERNEL, CONFIG_KERNEL_INIT_PRIORITY_DEVICE, &watchdog_api);
 DT_FOREACH_STATUS_OKAY(agv_test_watchdog, WATCHDOG)
-#endif
 
 /* The reset flags. */
 uint32_t fake_reset_flags;

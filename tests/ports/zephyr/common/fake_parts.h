@@ -37,7 +37,6 @@ typedef struct {
     can_tx_callback_t sent_callback;
     void *sent_data;
     struct can_frame sent[FAKE_SENT_MAX]; /**< accepted frames, in order */
-    uint32_t sent_ms[FAKE_SENT_MAX];
     uint32_t sent_count;
     enum can_state state;
     can_state_change_callback_t state_callback;

@@ -34,7 +34,7 @@ static void send_vcu(uint8_t data[AGV_DLC]) {
 
 static void send_eps(uint8_t data[AGV_DLC]) {
     const agv_steering_status_t steering = {.alive_counter = counter, .supply_pct_of_12v = 100u};
-    const agv_eps_status_t eps = {.mode = AGV_EPS_MODE_ANGLE, .faults = vehicle.eps_faults};
+    const agv_eps_status_t eps = {.mode = AGV_EPS_MODE_ANGLE};
     const agv_steering_position_t position = {0};
     (void)agv_pack_steering_status(data, &steering);
     send(AGV_MSG_STEERING_STATUS, data);
@@ -61,7 +61,7 @@ static void send_ai(uint8_t data[AGV_DLC], bool all) {
     }
 }
 
-void vehicle_millisecond(uint32_t now_ms) {
+static void send_due(uint32_t now_ms) {
     uint8_t data[AGV_DLC] = {0};
     if ((now_ms % 10u) == 0u) {
         counter++;
@@ -81,7 +81,7 @@ void vehicle_millisecond(uint32_t now_ms) {
 void vehicle_run(uint32_t ms) {
     uint32_t now_ms = k_uptime_get_32();
     for (const uint32_t end_ms = now_ms + ms; now_ms != end_ms; now_ms++) {
-        vehicle_millisecond(now_ms);
+        send_due(now_ms);
         k_sleep(K_TIMEOUT_ABS_MS(now_ms + 1u));
     }
 }

@@ -16,7 +16,6 @@ typedef struct {
     bool park;
     bool ai_is_silent;
     bool button_1;
-    uint8_t eps_faults;
     int32_t speed_mm_s;
 } vehicle_t;
 
@@ -24,9 +23,6 @@ extern vehicle_t vehicle;
 
 /** Called for each of their frames; defined by the part that simulates the bus. */
 void vehicle_sends(const struct can_frame *frame);
-
-/** Run one millisecond: send the frames that are due. */
-void vehicle_millisecond(uint32_t now_ms);
 
 /** Run for this time, in real time of the kernel. */
 void vehicle_run(uint32_t ms);

@@ -6,6 +6,7 @@ hal_t hal;
 zephyr_hal_retained_t retained;
 
 static bool begin(bool listen_only) {
+    fixture_after(NULL);
     const zephyr_hal_config_t config = {.bitrate = 500000u,
                                         .sample_point_permille = 875u,
                                         .watchdog_ms = 100u,

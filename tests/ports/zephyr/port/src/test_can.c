@@ -29,7 +29,6 @@ ZTEST(port_can, test_the_port_starts_as_the_contract_requires) {
 
 /* Shows: SUP-7 */
 ZTEST(port_can, test_without_a_free_filter_the_port_does_not_start) {
-    fixture_after(NULL);
     fake_parts_reset();
     vehicle->filter_limit = 1u;
     zassert_false(fixture_begin());
@@ -40,7 +39,6 @@ ZTEST(port_can, test_without_a_free_filter_the_port_does_not_start) {
 
 /* Shows: SUP-7 */
 ZTEST(port_can, test_a_controller_that_recovers_by_itself_is_refused) {
-    fixture_after(NULL);
     fake_parts_reset();
     vehicle->able = 0u;
     zassert_false(fixture_begin());
@@ -367,7 +365,6 @@ ZTEST(port_can, test_a_purge_in_bus_off_stops_nothing) {
 }
 
 ZTEST(port_can, test_a_controller_that_only_listens_is_not_stopped) {
-    fixture_after(NULL);
     fake_parts_reset();
     zassert_true(fixture_begin_listening());
     jam();

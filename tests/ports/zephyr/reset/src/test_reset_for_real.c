@@ -27,26 +27,21 @@ static __noinit struct {
 static supervise_t self;
 static volatile bool hang;
 
-static K_THREAD_STACK_DEFINE(stack, 2048);
-static struct k_thread thread;
-
-static void supervise(void *a, void *b, void *c) {
-    ARG_UNUSED(a);
-    ARG_UNUSED(b);
-    ARG_UNUSED(c);
+static void supervise(void) {
     supervise_start(&self, &recorder, &retained);
     while (!hang) {
         supervise_once(&self);
     }
 }
 
+K_THREAD_DEFINE(supervisor, 2048, supervise, NULL, NULL, NULL, K_PRIO_COOP(2), 0, SYS_FOREVER_MS);
+
 static void begin(uint32_t flags) {
     fake_parts_reset();
     fake_reset_flags = flags;
     fake_buses[HAL_CAN_VEHICLE].sends_at_once = true;
     vehicle = (vehicle_t){.park = true};
-    (void)k_thread_create(&thread, stack, K_THREAD_STACK_SIZEOF(stack), supervise, NULL, NULL, NULL, K_PRIO_COOP(2), 0,
-                          K_NO_WAIT);
+    k_thread_start(supervisor);
     vehicle_run(5u);
 }
 
@@ -67,6 +62,8 @@ static void drive_and_trip(void) {
     vehicle_run(200u);
     zassert_equal(agv_supervisor_state(&self.supervisor), AGV_STATE_TRIPPED);
     zassert_true(fake_output_is_closed());
+    zassert_true(fake_window_watchdog.feeds > 50u);
+    zassert_equal(fake_window_watchdog.outside, 0u, "always fed in its window");
 }
 
 static uint32_t recurse(volatile uint32_t *above) {
@@ -78,16 +75,12 @@ static uint32_t recurse(volatile uint32_t *above) {
     return recurse(here) + here[63];
 }
 
-static K_THREAD_STACK_DEFINE(small_stack, 512);
-static struct k_thread small_thread;
-
-static void overflow(void *a, void *b, void *c) {
+static void overflow(void) {
     volatile uint32_t begin_of_stack = 0u;
-    ARG_UNUSED(a);
-    ARG_UNUSED(b);
-    ARG_UNUSED(c);
     (void)recurse(&begin_of_stack);
 }
+
+K_THREAD_DEFINE(overflowing, 512, overflow, NULL, NULL, NULL, K_PRIO_PREEMPT(1), 0, SYS_FOREVER_MS);
 
 static void end_by_a_supervisor_that_hangs(void) {
     hang = true;
@@ -105,21 +98,15 @@ static void end_by_a_failed_assertion(void) {
 }
 
 static void end_by_a_stack_that_overflows(void) {
-    (void)k_thread_create(&small_thread, small_stack, K_THREAD_STACK_SIZEOF(small_stack), overflow, NULL, NULL, NULL,
-                          K_PRIO_PREEMPT(1), 0, K_NO_WAIT);
+    k_thread_start(overflowing);
     k_msleep(ENDS_MS);
 }
 
 /* A thread that is readied by the opening of the output, and closes it: as the supervisor's could be by its timer. */
-static K_THREAD_STACK_DEFINE(closer_stack, 512);
-static struct k_thread closer_thread;
 static K_SEM_DEFINE(opened, 0, 1);
 static struct gpio_callback on_opening;
 
-static void close_again(void *a, void *b, void *c) {
-    ARG_UNUSED(a);
-    ARG_UNUSED(b);
-    ARG_UNUSED(c);
+static void close_again(void) {
     (void)k_sem_take(&opened, K_FOREVER);
     hal_safety_output_set(&self.hal, true);
 }
@@ -131,22 +118,20 @@ static void output_opens(const struct device *port, struct gpio_callback *callba
     k_sem_give(&opened);
 }
 
-static void fail(void *a, void *b, void *c) {
-    ARG_UNUSED(a);
-    ARG_UNUSED(b);
-    ARG_UNUSED(c);
+static void fail(void) {
     hal_safety_output_set(&self.hal, true);
     __ASSERT(self.ticked_ms == 0u, "on purpose");
 }
+
+K_THREAD_DEFINE(closer, 512, close_again, NULL, NULL, NULL, K_PRIO_COOP(1), 0, SYS_FOREVER_MS);
+K_THREAD_DEFINE(failing, 512, fail, NULL, NULL, NULL, K_PRIO_PREEMPT(1), 0, SYS_FOREVER_MS);
 
 static void end_by_a_thread_that_can_be_preempted(void) {
     static const struct gpio_dt_spec output = GPIO_DT_SPEC_GET(DT_NODELABEL(agv_supervisor), safety_output_gpios);
     gpio_init_callback(&on_opening, output_opens, BIT(output.pin));
     zassert_ok(gpio_add_callback(output.port, &on_opening));
-    (void)k_thread_create(&closer_thread, closer_stack, K_THREAD_STACK_SIZEOF(closer_stack), close_again, NULL, NULL,
-                          NULL, K_PRIO_COOP(1), 0, K_NO_WAIT);
-    (void)k_thread_create(&small_thread, small_stack, K_THREAD_STACK_SIZEOF(small_stack), fail, NULL, NULL, NULL,
-                          K_PRIO_PREEMPT(1), 0, K_NO_WAIT);
+    k_thread_start(closer);
+    k_thread_start(failing);
     zassert_ok(gpio_pin_interrupt_configure_dt(&output, GPIO_INT_EDGE_FALLING));
     k_msleep(ENDS_MS);
 }

@@ -13,25 +13,20 @@ static ZEPHYR_HAL_RETAINED agv_recorder_t recorder;
 static ZEPHYR_HAL_RETAINED zephyr_hal_retained_t retained;
 supervise_t agv_supervise;
 
-static K_THREAD_STACK_DEFINE(stack, 2048);
-static struct k_thread thread;
-
-static void supervise(void *a, void *b, void *c) {
-    ARG_UNUSED(a);
-    ARG_UNUSED(b);
-    ARG_UNUSED(c);
+static void supervise(void) {
     supervise_start(&agv_supervise, &recorder, &retained);
     for (;;) {
         supervise_once(&agv_supervise);
     }
 }
 
+K_THREAD_DEFINE(supervisor, 2048, supervise, NULL, NULL, NULL, K_PRIO_COOP(2), 0, SYS_FOREVER_MS);
+
 static void *setup(void) {
     fake_parts_reset();
     fake_buses[HAL_CAN_VEHICLE].sends_at_once = true;
     vehicle = (vehicle_t){.park = true, .ai_is_silent = true};
-    (void)k_thread_create(&thread, stack, K_THREAD_STACK_SIZEOF(stack), supervise, NULL, NULL, NULL, K_PRIO_COOP(2), 0,
-                          K_NO_WAIT);
+    k_thread_start(supervisor);
     vehicle_run(5000u); /* STANDBY at standstill: events are copied to flash */
     return NULL;
 }
