@@ -11,8 +11,8 @@
 enum { VEHICLE = 0, GEAR_STATUS, THROTTLE_STATUS, STEERING_STATUS, EPS_STATUS, POSITION, WHEELS };
 /* STEP_MS: the longest permitted time between ticks, because only ticks check deadlines. A longer one trips (TIM-4). */
 enum { HEARTBEAT_MS = 50, STEP_MS = 101, STATUS_MS = 60, GEAR_STATUS_MS = 125, CONFIRM_MS = 500, CONFIRMED_MS = 5000 };
-/* LATELY_MS: tolerance for the conditions of a reset, which ticks check. */
-enum { PRESS_MS = 1000, PRESS_MAX_MS = 5000, LATELY_MS = PRESS_MS - STEP_MS };
+/* LATELY_MS: ticks check the conditions of a reset, and of the time before a late one 10 ms count. */
+enum { PRESS_MS = 1000, PRESS_MAX_MS = 5000, LATELY_MS = PRESS_MS - 10 };
 enum { IDLE_COUNTS = 2, SLOW_COUNTS = 180, THROTTLE_COUNTS = 250, ENGAGED_ALONE = 0x80, MODE_BITS = 0xC0 };
 enum { P = 8, CYCLE_MS = 100, PASSIVE_CYCLE_MS = 103, OVERRIDE_GAP_MS = 5 };
 
@@ -415,7 +415,14 @@ static void check_state(rules_t *rules, const rules_seen_t *seen) {
  * clock. The values before the tick count, because a trip discards waiting frames, and the tick feeds the watchdog
  * last.
  */
-static void check_closed(rules_t *rules) {
+static void check_closed(rules_t *rules, const rules_seen_t *seen) {
+    static const agv_fault_t OPENING[] = {AGV_FAULT_BUS_OFF, AGV_FAULT_TX_STALLED, AGV_FAULT_SAFE_STATE_UNCONFIRMED,
+                                          AGV_FAULT_VEHICLE_NOT_STOPPING, AGV_FAULT_MOVING_WHILE_SAFE};
+    for (unsigned i = 0; i < sizeof OPENING / sizeof OPENING[0]; i++) {
+        if (agv_fault_is_in(&seen->active, OPENING[i])) {
+            broken(rules, "FSM-4: the safety output is closed, and %s is active", agv_fault_name(OPENING[i]));
+        }
+    }
     if (rules->bus.is_bus_off) {
         broken(rules, "FSM-4: the safety output is closed in bus-off");
     }
@@ -474,7 +481,7 @@ static void check_output(rules_t *rules, const rules_seen_t *seen, bool tick) {
         broken(rules, "FSM-4: the safety output is closed in INIT");
     }
     if (tick) {
-        check_closed(rules);
+        check_closed(rules, seen);
     }
     if (tick && is_latched(seen->state)) {
         check_confirmation(rules);
@@ -513,6 +520,9 @@ void rules_returned(rules_t *rules, const rules_seen_t *seen, bool tick, uint64_
     check_output(rules, seen, tick);
     if (tick && is_supervising(seen->state)) {
         check_silence(rules);
+    }
+    if (tick && (seen->state == AGV_STATE_ACTIVE) && (agv_fault_first(&seen->trips) != AGV_FAULT_NONE)) {
+        broken(rules, "FSM-11: ACTIVE with the trip cause %s", agv_fault_name(agv_fault_first(&seen->trips)));
     }
     if (tick) {
         check_sending(rules, seen, tick_gap_ms);

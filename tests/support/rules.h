@@ -6,7 +6,7 @@
  *   - Silence trips (SUP-2, SUP-3). Alarm bits trip in the same call (SUP-4), with all safe commands (FSM-2).
  *   - Only a reset under its conditions ends the latch (FSM-3). The first reason is kept (FSM-5).
  *   - The safety output closes only on entry to STANDBY, and opens when it must, also for a confirmation that comes and
- *     goes (FSM-4). A start follows FSM-7.
+ *     goes (FSM-4). A start follows FSM-7. No trip cause is active in ACTIVE (FSM-11).
  *   - Safe commands are sent at once and on their cycles, and other senders' commands are overridden (TOP-1, TIM-1).
  *   - A gateway passes on only what it received (TOP-2). In shadow mode no frame is sent (TOP-4).
  *   - The gate never refuses a frame, and no memory corruption is detected.
@@ -37,6 +37,7 @@ typedef struct {
     agv_state_t state;
     agv_fault_t first_reason;
     agv_fault_set_t active;
+    agv_fault_set_t trips; /* those of class trip */
     bool output_closed;
     uint32_t gate_refused;
     uint32_t watchdog_feeds; /* feeds that reached the hardware watchdog */

@@ -41,6 +41,7 @@ static rules_seen_t state_of_supervisor(void) {
     const rules_seen_t seen = {.state = agv_supervisor_state(&testbed.supervisor),
                                .first_reason = agv_supervisor_first_reason(&testbed.supervisor),
                                .active = agv_supervisor_active_faults(&testbed.supervisor),
+                               .trips = agv_supervisor_active_trips(&testbed.supervisor),
                                .output_closed = testbed.hal.safety_output.on,
                                .gate_refused = agv_supervisor_counters(&testbed.supervisor)->gate_refused,
                                .watchdog_feeds = testbed.hal.feeds};
