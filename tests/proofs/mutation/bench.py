@@ -23,7 +23,7 @@ CORE = BUILD / "core"
 SOURCES = ROOT / "firmware/src"
 # What a verdict rests on. Not the equivalents: they are asked for when results are merged.
 INPUTS = ("CMakePresets.json", "cmake", "firmware", "hal/include", "hal/sim", "tests/unit", "tests/integration",
-          "tests/ports/sim", "tests/ports/template", "tests/support",
+          "tests/ports/sim", "tests/ports/template", "tests/support", "tests/fuzz/fuzz_supervisor.c", "tests/fuzz/input.h",
           "tests/proofs/mutation/mutants.py", "tests/proofs/mutation/bench.py",
           "tests/proofs/mutation/stop_at_failure.c")
 INCLUDES = [f"-I{ROOT}/firmware/include", f"-I{SOURCES}", f"-I{ROOT}/hal/include"]
