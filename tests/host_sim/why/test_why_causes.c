@@ -3,6 +3,12 @@
 
 #define AUTOPILOT "\0\0\0\0\0\0\x80"
 
+/* With the configuration as it is now. */
+static void begin_anew(void) {
+    why_free(why);
+    why = why_new(&config);
+}
+
 static const why_trip_t *trip_by(agv_fault_t fault, uint64_t t_ms) {
     feed_trip(why, (uint8_t)fault, t_ms);
     TEST_ASSERT_EQUAL_UINT(1, why_trip_count(why));
@@ -24,7 +30,8 @@ typedef struct {
         uint64_t cause_ms;
         uint64_t good_ms; /* NONE: there was none */
         int64_t limit;
-        const char *unit; /* NULL: no limit */
+        const char *unit;  /* NULL: no limit */
+        const char *words; /* NULL: any */
     } trip;
 } row_t;
 enum { NONE = 0 };
@@ -32,19 +39,29 @@ enum { NONE = 0 };
 static const row_t ROWS[] = {
     {"a command is silent from the engagement on",
      {{0x168, "\x08", 1000}, {0x363, AUTOPILOT, 5000}},
-     {AGV_FAULT_GEAR_COMMAND_TIMEOUT, 5351, WHY_SILENCE, 5000, 1000, 350, "ms"}},
+     {AGV_FAULT_GEAR_COMMAND_TIMEOUT, 5351, WHY_SILENCE, 5000, 1000, 350, "ms", NULL}},
     {"an AI computer that was never seen has its own deadline",
      {{0x363, AUTOPILOT, 5000}},
-     {AGV_FAULT_AI_HEARTBEAT_LOST, 5501, WHY_SILENCE, 5000, NONE, 500, "ms"}},
+     {AGV_FAULT_AI_HEARTBEAT_LOST, 5501, WHY_SILENCE, 5000, NONE, 500, "ms", NULL}},
     {"a counter that is stuck",
      {{0x067, "\x01", 1000}, {0x067, "\x02", 1010}, {0x067, "\x02", 1020}, {0x067, "\x02", 1030}},
-     {AGV_FAULT_EPS_HEARTBEAT_STUCK, 1061, WHY_STUCK, 1020, 1010, 50, "ms"}},
+     {AGV_FAULT_EPS_HEARTBEAT_STUCK, 1061, WHY_STUCK, 1020, 1010, 50, "ms",
+      "067h steering_status kept its alive counter from 1.020 s on [02 00 00 00 00 00 00 00]: last change at 1.010 s, "
+      "deadline 50 ms"}},
+    {"both modes at once",
+     {{0x363, "\0\0\0\0\0\0\x40", 990}, {0x363, "\0\0\0\0\0\0\xC0\x01", 1000}},
+     {AGV_FAULT_MODE_INVALID, 1051, WHY_MODE, 1000, 990, 50, "ms",
+      "363h vehicle_status reported manual and autopilot together for 50 ms, from 1.000 s on"}},
+    {"more throttle than commanded",
+     {{0x363, AUTOPILOT, 1000}, {0x075, "\x0A", 1001}, {0x050, "\x0A", 1990}, {0x050, "\x64", 2000}},
+     {AGV_FAULT_THROTTLE_DEVIATION, 2500, WHY_BUDGET, 2000, 1990, 25, "counts",
+      "050h throttle_status was more than 25 counts above 075h throttle_command for 500 ms, from 2.000 s on"}},
     {"a bit began with the first frame that has it, since the last one without it",
      {{0x363, "\0\0\0\0\x01\0\x40", 900},
       {0x363, "\0\0\0\0\0\0\x40\x01", 1000},
       {0x363, "\0\0\0\0\x01\0\x40\x02", 1010},
       {0x363, "\0\0\0\0\x01\0\x40\x03", 1020}},
-     {AGV_FAULT_REMOTE_SIGNAL_LOST, 1020, WHY_BIT, 1010, 1000, WHY_NO_LIMIT, NULL}},
+     {AGV_FAULT_REMOTE_SIGNAL_LOST, 1020, WHY_BIT, 1010, 1000, WHY_NO_LIMIT, NULL, NULL}},
     {"a score began where it left 0: 2 1 0 2 1 3 5 6",
      {{0x167, "\0\0\0\x01\0\0\0\x01", 1000},
       {0x167, "\0\0\0\x01", 1010},
@@ -54,45 +71,47 @@ static const row_t ROWS[] = {
       {0x167, "\0\0\0\x01\0\0\0\x01", 1050},
       {0x167, "\0\0\0\x01\0\0\0\x01", 1060},
       {0x167, "\0\0\0\x01\0\0\0\x01", 1070}},
-     {AGV_FAULT_EPS_UNDER_VOLTAGE, 1070, WHY_SCORE, 1030, 1020, 3, "frames"}},
+     {AGV_FAULT_EPS_UNDER_VOLTAGE, 1070, WHY_SCORE, 1030, 1020, 3, "frames", NULL}},
     {"a budget began with the condition: 50.1 degrees off",
      {{0x363, AUTOPILOT, 1000},
       {0x065, "\x28\x23", 1001},
       {0x067, "\x01\x64\x28\x23", 1990},
       {0x067, "\x02\x64\x1D\x25", 2000},
       {0x067, "\x03\x64\x1D\x25", 2490}},
-     {AGV_FAULT_STEERING_DEVIATION, 2500, WHY_BUDGET, 2000, 1990, 500, "ddeg"}},
+     {AGV_FAULT_STEERING_DEVIATION, 2500, WHY_BUDGET, 2000, 1990, 500, "ddeg",
+      "067h steering_status was more than 50.0 deg off 065h steering_command for 500 ms, from 2.000 s on"}},
     {"progress begins a budget anew: 204.8, then 102.4 degrees off",
      {{0x363, AUTOPILOT, 1000},
       {0x065, "\x28\x23", 1001},
       {0x067, "\x02\x64\x28\x2B", 2000},
       {0x067, "\x03\x64\x28\x27", 2300}},
-     {AGV_FAULT_STEERING_DEVIATION, 2800, WHY_BUDGET, 2300, NONE, 500, "ddeg"}},
+     {AGV_FAULT_STEERING_DEVIATION, 2800, WHY_BUDGET, 2300, NONE, 500, "ddeg", NULL}},
     {"throttle in gear P before the engagement: no frame before was good",
      {{0x0A3, "\x08", 900},
       {0x050, "\xC8", 910},
       {0x050, "\xC8", 990},
       {0x363, AUTOPILOT, 1000},
       {0x050, "\xC8", 1010}},
-     {AGV_FAULT_THROTTLE_IN_PARK, 2010, WHY_BUDGET, 1010, NONE, 200, "ms"}},
+     {AGV_FAULT_THROTTLE_IN_PARK, 2010, WHY_BUDGET, 1010, NONE, 200, "ms", NULL}},
     {"an angle that was off before the first command: no frame before was good",
      {{0x363, AUTOPILOT, 1000}, {0x067, "\x01\x64\x1D\x25", 1005}, {0x065, "\x28\x23", 1010}},
-     {AGV_FAULT_STEERING_DEVIATION, 2010, WHY_BUDGET, 1010, NONE, 500, "ddeg"}},
+     {AGV_FAULT_STEERING_DEVIATION, 2010, WHY_BUDGET, 1010, NONE, 500, "ddeg", NULL}},
     {"a command was out of range before the engagement too: the last good one is older",
      {{0x065, "\x28\x23", 900}, {0x065, "\x51\x46", 950}, {0x363, AUTOPILOT, 1000}, {0x065, "\x51\x46", 1020}},
-     {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, 1020, WHY_VALUE, 1020, 900, 9000, "ddeg"}},
+     {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, 1020, WHY_VALUE, 1020, 900, 9000, "ddeg", NULL}},
     {"the command that is out of range: 18001",
      {{0x363, AUTOPILOT, 1000}, {0x065, "\x28\x23", 1020}, {0x065, "\x51\x46", 1045}},
-     {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, 1045, WHY_VALUE, 1045, 1020, 9000, "ddeg"}}, /* on the wire 0 is -900.0 deg */
+     {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, 1045, WHY_VALUE, 1045, 1020, 9000, "ddeg",
+      NULL}}, /* on the wire 0 is -900.0 deg */
     {"a bit of 363h that counts while engaged only began with the engagement",
      {{0x363, "\0\0\0\0\0\0\x40", 900},
       {0x363, "\0\0\0\0\x08\0\x40\x01", 910},
       {0x363, "\0\0\0\0\x08\0\x80\x02", 1000},
       {0x363, "\0\0\0\0\x08\0\x80\x03", 1010}},
-     {AGV_FAULT_VCU_AI_CAN_LOST, 1000, WHY_BIT, 1000, 900, WHY_NO_LIMIT, NULL}},
+     {AGV_FAULT_VCU_AI_CAN_LOST, 1000, WHY_BIT, 1000, 900, WHY_NO_LIMIT, NULL, NULL}},
     {"of two frames with one stamp the second has the bit: the last good one came before",
      {{0x167, "\0\0\0\x01", 1000}, {0x167, "\0\0\0\x01", 1010}, {0x167, "\0\0\0\x01\0\0\0\x40", 1010}},
-     {AGV_FAULT_EPS_MOTOR_ENCODER, 1010, WHY_BIT, 1010, 1000, WHY_NO_LIMIT, NULL}},
+     {AGV_FAULT_EPS_MOTOR_ENCODER, 1010, WHY_BIT, 1010, 1000, WHY_NO_LIMIT, NULL, NULL}},
 };
 
 static void check_row(const row_t *row) {
@@ -106,6 +125,9 @@ static void check_row(const row_t *row) {
                                      trip->last_good_us, row->name);
     TEST_ASSERT_EQUAL_INT64_MESSAGE(row->trip.limit, trip->limit, row->name);
     TEST_ASSERT_EQUAL_STRING_MESSAGE(row->trip.unit, trip->unit, row->name);
+    if (row->trip.words != NULL) {
+        check_words(trip, row->trip.words);
+    }
 }
 
 void test_causes(void) {
@@ -114,6 +136,15 @@ void test_causes(void) {
         setUp();
         check_row(&ROWS[i]);
     }
+}
+
+void test_a_sentence_has_the_identifiers_of_the_configuration(void) {
+    config.id_steering_command = 0x165;
+    begin_anew();
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 1000);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x165, "\x28\x23\0\0\0\0\0", 1010);
+    check_words(trip_by(AGV_FAULT_STEERING_COMMAND_TIMEOUT, 1136),
+                "165h steering_command was silent: last at 1.010 s, deadline 125 ms, none since");
 }
 
 void test_silence_begins_a_cycle_after_the_last_frame(void) {
@@ -163,8 +194,7 @@ void test_extended_frames_during_a_silence(void) {
 
 void test_a_command_that_the_gateway_withheld(void) {
     config.topology = AGV_TOPOLOGY_GATEWAY;
-    why_free(why);
-    why = why_new(&config);
+    begin_anew();
     feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 1000);
     for (uint64_t i = 0; i < 6; i++) { /* 363h reports manual after that of 1010 */
         feed_frame(why, HAL_CAN_AI, 0x065, "\0\0\0\0\0\0\0", 1010 + (i * 25));
@@ -214,8 +244,7 @@ void test_bad_modes_of_several_kinds(void) {
 
 void test_a_start_in_tripped_that_was_chosen(void) {
     config.after_power_on = AGV_AFTER_POWER_ON_TRIPPED;
-    why_free(why);
-    why = why_new(&config);
+    begin_anew();
     feed_state(why, 0, AGV_STATE_TRIPPED, AGV_FAULT_SUPERVISOR_RESET, 0);
     check_words(why_trip(why, 0), "a power-on (after_power_on: tripped), or the processor was reset while it ran");
 }
@@ -230,8 +259,7 @@ void test_a_message_that_never_came(void) {
 
 void test_a_wrong_step_counts_as_stuck_where_the_counter_has_to_increment(void) {
     config.eps_counter = AGV_COUNTER_INCREMENTS;
-    why_free(why);
-    why = why_new(&config);
+    begin_anew();
     feed_frame(why, HAL_CAN_VEHICLE, 0x067, "\x01\0\0\0\0\0\0", 1000);
     feed_frame(why, HAL_CAN_VEHICLE, 0x067, "\x02\0\0\0\0\0\0", 1010);
     feed_frame(why, HAL_CAN_VEHICLE, 0x067, "\x20\0\0\0\0\0\0", 1020);
