@@ -176,20 +176,12 @@ class Refused(Campaign):
                                     ("more", lines + lines[-1:], "more runs than the campaign has"),
                                     ("gap", lines[:5] + lines[6:], ":6: run 9 is expected here"),
                                     ("torn", lines[:-1] + [lines[-1][:20]], "not a result of a campaign"),
+                                    ("open", lines[:-1] + [lines[-1][:-1]], "a campaign: the line is incomplete"),
                                     ("text", ["hello\n"], ":1: not a result of a campaign"),
                                     ("other", ["{}\n"], ":1: no results of a campaign"),
                                     ("empty", [], "empty: is empty")):
             self.write(name, "".join(changed))
             self.refuse("--merge", one, name, *out, says=says)
-
-    def test_a_shard_without_its_last_line_break_is_torn(self):
-        one, two = self.shard(1, 2), self.shard(2, 2)
-        for torn, other in ((one, two), (two, one)):
-            whole = (self.folder / torn).read_bytes()
-            self.write("torn", whole[:-1])
-            count = whole.count(b"\n")
-            self.refuse("--merge", "torn", other, "--results", "out.jsonl",
-                        says=f"torn:{count}: not a result of a campaign: the line is incomplete")
 
     def refuse_line(self, number, line, says):
         """Shard 2 of 2, of which a line is another."""

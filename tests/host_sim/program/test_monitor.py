@@ -159,18 +159,6 @@ class Lines(hostsim.Case):
         self.monitor("--log", EXAMPLE, "--speed", "4")
         self.assertGreater(time.monotonic() - begin, 1.394 / 4)
 
-    # Shows: SUP-3
-    def test_in_manual_an_ai_computer_may_be_switched_off(self):
-        ai = ["(1700000000.%06d) can0 %s\n" % (1000 * ms + 5, text) for ms in range(0, 500, 25)
-              for text in ("43F#00000000000000%02X" % (ms // 25), "168#0800000000000000", "075#0000000000000000",
-                           "065#2823000000000000")]
-        self.write("b.log", "".join(sorted(long_log(3).splitlines(keepends=True) + ai)))
-        done = self.monitor("--log", "b.log", "--speed", "max", cwd=self.folder)
-        self.assertEqual(done.returncode, 0)
-        self.assertNotIn(" late", done.stdout)
-        self.assertEqual([line.split()[3] for line in done.stdout.splitlines() if " silent: no frame" in line],
-                         ["065h", "43Fh", "168h", "075h"])
-
     def test_a_log_on_standard_input(self):
         done = subprocess.run([hostsim.PROGRAM, "monitor", "--log", "-", "--speed", "max"], input=EXAMPLE.read_bytes(),
                               stdout=subprocess.PIPE, check=False, timeout=60)

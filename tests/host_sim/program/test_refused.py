@@ -16,6 +16,7 @@ FILES = {"log": (HOST_SIM / "examples" / "ai-stops.log").read_text(encoding="asc
          "s.yaml": (HOST_SIM / "scenarios" / "overview" / "healthy_shared.yaml").read_text(encoding="utf-8"),
          "bridge.yaml": "name: n\nshows: [TOP-2]\ntopology: gateway\nduration_ms: 1s\nexpect:\n  states: any\n"}
 FORM = "WHO-WHAT[,NAME=VALUE]...@TIME is needed, such as ai-stop@2s"
+STANDARD_INPUT = "host_sim: -: standard input is not read here; give the name of a file"
 RUNS_NOTHING = "--tables runs nothing: no other option and no file can be combined with it"
 
 # Of each command: arguments, and what the line says. The interface `nosuch`: all else was in order.
@@ -63,6 +64,12 @@ ROWS = {
     "config": (
         ("--schema --to-kconfig", "give only one of --schema and --to-kconfig"),
         ("log", "unexpected argument 'log'")),
+    "demo": (
+        ("more", "more"),
+        ("--scenario nonesuch", "no scenario 'nonesuch'"),
+        ("--scenario " + "x" * 5000, "too long"),
+        ("--scenario ./s.yaml --events s.yaml", "same file"),
+        *((f"{option} no/where", "no/where: No such file or directory") for option in ("--events", "--report"))),
     "hunt": (
         ("", "--seed is missing"),
         ("--seed 1", "--runs or --for-minutes is missing"),
@@ -92,6 +99,10 @@ ROWS = {
         ("nofile", "nofile: No such file"),
         *((f"{option} {bad} log", f"{option}: '{bad}' is not ") for option, highest in (
             ("--tail", 8640000000), ("--start-ms", 4294967295)) for bad in (-1, highest + 1)),
+        *((f"{option} ./log log", "same file") for option in (
+            "--out", "--events", "--store", "--why", "--trace", "--report")),
+        ("--out - --events - log", "same file"),
+        ("--config c.yaml --out c.yaml log", "same file"),
         ("--topology SHARED log", "shared|gateway"),
         ("--id-set SHARED log", "heading|table"),
         ("--reset-cause SHARED log", "power-on|watchdog|brown-out|lock-up|software|unknown"),
@@ -116,6 +127,15 @@ ROWS = {
         ("--can a --events - --out -", "--out and --events"),
         ("--can a --config c.yaml --out c.yaml", "--config and --out")),
     "scenario": (
+        ("", "FILE is missing"),
+        ("nowhere.yaml", "nowhere.yaml: No such file"),
+        ("s.yaml /dev/null", "/dev/null: not a regular file"),
+        ("s.yaml -", STANDARD_INPUT),
+        ("--config - s.yaml", STANDARD_INPUT),
+        ("--topology shared bridge.yaml", "the file fixes the topology"),
+        ("--events e s.yaml s.yaml", "need a single scenario, 2 were given"),
+        ("--junit nowhere/j.xml s.yaml", "nowhere/j.xml: "),
+        *((f"{option} s.yaml s.yaml", "the same file, 's.yaml'") for option in ("--junit", "--report")),
         (" ".join(["s.yaml"] * 1001), "FILE: more than 1000 were given"),
         ("--from log -o c.yaml", "c.yaml: exists already, and is not replaced"),
         ("--from -", "the log is read twice"),

@@ -17,10 +17,6 @@ void setUp(void) {
     options.id_set = -1;
 }
 
-void tearDown(void) {
-    scratch_close();
-}
-
 static bool read_text(const char *text) {
     return scenario_read_text(&scenario, "s.yaml", text, &options);
 }
@@ -475,26 +471,4 @@ void test_a_file_that_is_not_there(void) {
 
 void test_aliases_that_lead_back_are_refused_and_do_no_harm(void) {
     read_bad("&a\nname: n\nshows: [SUP-2]\nduration_ms: 9\nexpect: *a\n", "unknown key 'name' in expect");
-}
-
-/* Whatever is cut off a good file, or changed in it: read or refused with one line, and nothing worse. */
-void test_damaged_files_do_no_harm(void) {
-    static const char good[] = STEP("at_ms: 1, eps: set, field: angle, value: 4651h, frames: 3");
-    static char text[sizeof good];
-
-    for (size_t length = 0u; length < sizeof good; length++) {
-        memcpy(text, good, length);
-        text[length] = '\0';
-        (void)read_text(text);
-        (void)scratch_said();
-    }
-    for (size_t at = 0u; at + 1u < sizeof good; at++) {
-        for (const char *other = ":{[&*\"x\t-"; *other != '\0'; other++) {
-            memcpy(text, good, sizeof good);
-            text[at] = *other;
-            const bool read = read_text(text);
-            const char *said = scratch_said();
-            TEST_ASSERT_EQUAL_MESSAGE(read, said[0] == '\0', text);
-        }
-    }
 }

@@ -124,16 +124,6 @@ class OfTshark(Case):
 
 
 class Bounded(Case):
-    def test_a_pipe_that_never_ends_a_line(self):
-        read_end, write_end = os.pipe()
-        with subprocess.Popen(["sh", "-c", "yes | tr -d '\\n'"], stdout=write_end, stderr=subprocess.DEVNULL):
-            os.close(write_end)
-            done = subprocess.run([hostsim.PROGRAM, "replay", "-"], stdin=read_end, stderr=subprocess.PIPE, timeout=60,
-                                  stdout=subprocess.DEVNULL, check=False)
-            os.close(read_end)
-        self.assertEqual(done.returncode, 2)
-        self.assertEqual(done.stderr, b"standard input:1: the line is longer than 255 characters\n")
-
     def test_memory_is_bounded(self):
         """Compressed files one after the other, 20 MB of text, with 16 MiB of address space for data."""
         minute = gzip.compress(traffic.log(traffic.frames(60000, ENGAGED)).encode(), 1)

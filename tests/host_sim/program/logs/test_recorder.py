@@ -96,17 +96,6 @@ class Recorder(hostsim.Case):
             trip = json.loads(self.run_good("recorder", "--why", "-", expected[0]).stdout)["trips"][0]
             self.assertEqual((trip["reason"], trip["kind"], trip["message"], trip["cause_ms"]), expected)
 
-    def test_a_silence_from_the_engagement_on_is_that_of_the_replay(self):
-        for name, from_ms in (("turn_signal_command", 0), ("turn_signal_command", 400), ("gear_command", 400)):
-            self.write("x.log", traffic.log(traffic.frames(3000, engage_ms=1000, edit=stop((name,), from_ms))))
-            self.run_good("replay", "--store", f"s{name}{from_ms}", "--why", "x.json", "x.log")
-            replayed = json.loads(self.read("x.json"))["trips"][0]
-            found = json.loads(self.run_good("recorder", "--why", "-", f"s{name}{from_ms}").stdout)["trips"][0]
-            self.assertEqual(found["cause_ms"], 1000)
-            self.assertIsNone(found["last_good_ms"])
-            for key in ("t_ms", "reason", "message", "cause_ms", "limit", "unit"):
-                self.assertEqual(found[key], replayed[key], key)
-
     def test_a_cause_whose_time_the_recorder_does_not_know(self):
         def edit(frame):
             if frame.name == "vehicle_status" and 1500 <= frame.t_ms < 3500:

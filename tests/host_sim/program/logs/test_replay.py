@@ -11,8 +11,6 @@ SAFE_LIGHTS = 0x43F
 SAFE_GEAR = (0x168, bytes([8, 0, 0, 0, 0, 0, 0, 0]))
 SAFE_THROTTLE = (0x075, bytes(8))
 
-SUMMARY_KEYS = {"t_ms", "event", "received", "rejected", "dropped", "sent", "shadowed", "limited", "warnings",
-                "supervised_ms", "skipped_lines", "backward_stamps", "final_state", "first_reason"}
 STATUS = 0x7F0  # the status frame of the supervisor
 
 
@@ -206,8 +204,6 @@ class Time(hostsim.Case):
 
     def test_a_jump_of_more_than_100_days_is_a_bad_line(self):
         one = "(0000000012.000000) can0 000#\n"
-        self.assert_refused(self.refuse(one + "(1700000000.000000) can0 000#\n"), "log:2: ", "100 days")
-        self.assert_refused(self.refuse(one + "(0008640012.000001) can0 000#\n"), "log:2: ", "100 days")
         result = self.replay(one + "(1700000000.000000) can0 000#\n(0000000013.000000) can0 000#\n",
                              "--skip-bad-lines", "--tail=0")
         self.assertEqual((result.summary()["skipped_lines"], result.summary()["t_ms"]), (1, 1000))
@@ -223,27 +219,6 @@ class Time(hostsim.Case):
 
 
 class Events(hostsim.Case):
-    def test_the_first_and_the_last_lines(self):
-        result = self.replay(traffic.log(traffic.frames(100)))
-        self.assertEqual(result.events()[:3], [
-            {"t_ms": 0, "event": "state", "from": None, "to": "INIT", "reason": None},
-            {"t_ms": 0, "event": "safety_output", "closed": False},
-            {"t_ms": 0, "event": "led", "code": 0}])
-        self.assertEqual(set(result.summary()), SUMMARY_KEYS)
-        self.assertEqual(set(result.summary()["rejected"]), {"length", "extended", "remote", "fd", "error"})
-        self.assertEqual([event["event"] for event in result.events()].count("summary"), 1)
-
-    def test_every_line_is_of_the_kinds_that_are_documented(self):
-        edit = edit_payload("eps_status", 1500, byte(7, 0x20), 2500)
-        result = self.replay(traffic.log(traffic.frames(4000, engage_ms=1000, edit=edit)))
-        keys = {"state": {"from", "to", "reason"}, "fault": {"name", "class", "active"}, "safety_output": {"closed"},
-                "led": {"code"}, "reset": {"accepted", "why"}, "startup": {"missing"}}
-        times = []
-        for event in result.events()[:-1]:
-            self.assertEqual(set(event), keys[event["event"]] | {"t_ms", "event"})
-            times.append(event["t_ms"])
-        self.assertEqual(times, sorted(times))
-
     # Shows: EPS_TEMP_ABOVE_110, LED-1
     def test_a_warning_begins_and_ends(self):
         edit = edit_payload("eps_status", 1000, byte(7, 0x10), 1500)
@@ -267,20 +242,14 @@ class Events(hostsim.Case):
 
     # Shows: EPS_TEMP_ABOVE_110
     def test_a_warning_that_flaps_is_told_and_counted_each_time(self):
-        for times in (3, 4, 5, 10, 40):
+        for times in (3, 40):
             result = self.flapping(times)
             self.assertEqual(result.faults(), [(2003 + 20 * i, "EPS_TEMP_ABOVE_110", "warn") for i in range(times)])
             self.assertEqual(result.faults(active=False),
                              [(2013 + 20 * i, "EPS_TEMP_ABOVE_110", "warn") for i in range(times)])
             self.assertEqual(result.summary()["warnings"], times)
             self.assertIn("EPS_TEMP_ABOVE_110  warn  2.003 s   %d times   0.%02d0 s\n" % (times, times), result.stdout)
-
-    # Shows: EPS_TEMP_ABOVE_110
-    def test_a_warning_that_flaps_and_stays_is_active_at_the_end(self):
-        result = self.flapping(40, 2900)
-        self.assertEqual(len(result.faults()), 41)
-        self.assertEqual(result.faults()[-1][0], 2903)
-        self.assertRegex(result.stdout, r"41 times   1\.49\d s  active at the end\n")
+        self.assertRegex(self.flapping(40, 2900).stdout, r"41 times   1\.49\d s  active at the end\n")
 
     def test_a_reset_that_is_refused_and_one_that_is_accepted(self):
         def edit(frame):
@@ -444,12 +413,6 @@ class Controller(hostsim.Case):
 
 
 class Interfaces(hostsim.Case):
-    def test_what_is_sent_names_the_interface_that_was_heard_first(self):
-        lines = traffic.log(traffic.frames(100, interface="vcan7")).splitlines(keepends=True)
-        lines[1] = lines[1].replace("vcan7", "slcan0")
-        result = self.replay("".join(lines))
-        self.assertEqual({sent.interface for sent in result.sent()}, {"vcan7"})
-
     def test_on_the_shared_bus_every_interface_is_the_vehicle_side(self):
         lines = traffic.log(traffic.frames(1000)).splitlines(keepends=True)
         lines = [line.replace("can0", "can%d" % (number % 3)) for number, line in enumerate(lines)]

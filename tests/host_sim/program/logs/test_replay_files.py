@@ -41,13 +41,6 @@ class Outputs(hostsim.Case):
             for name in hostsim.OUTPUTS.values():
                 self.assertEqual(self.read(name), "agv-store old")
 
-    def test_files_are_replaced_as_a_whole(self):
-        for name in ("events.jsonl", "out.log"):
-            self.write(name, "old" * 1000000)
-        result = self.replay(LOG)
-        self.assertEqual(result.summary()["event"], "summary")
-        self.assertEqual(self.files(), ["events.jsonl", "log", "out.log"])
-
     def test_where_nothing_can_be_written(self):
         self.write("log", LOG)
         for option in ("--out", "--events", "--store", "--why", "--report", "--trace"):
@@ -70,21 +63,6 @@ class Outputs(hostsim.Case):
         self.assertEqual(self.files(), ["log", "pipe"])
         result = self.run_good("replay", "--events", "/dev/stdout", "log")
         self.assertTrue(result.stdout.startswith('{"t_ms": 0'))
-
-    def test_one_file_for_two_things_is_refused(self):
-        self.write("log", LOG)
-        self.write("c.yaml", "")
-        os.symlink("log", self.folder / "link")
-        os.link(self.folder / "log", self.folder / "twin")
-        for arguments in (("--out", "log"), ("--events", "./log"), ("--store", "link"), ("--why", "log"), ("--trace", "./log"),
-                          ("--report", "log"), ("--report", "link"), ("--report", "twin"), ("--out", "x", "--events", "x"),
-                          ("--out", "x", "--store", "./x"), ("--why", "x", "--report", "x"), ("--trace", "x", "--report", "x"),
-                          ("--events", "-", "--out", "-"),
-                          ("--config", "c.yaml", "--out", "c.yaml"), ("--events=/dev/stdout", "--out=-")):
-            with self.subTest(arguments):
-                self.assert_refused(self.run_program("replay", *arguments, "log"), "same file")
-        self.assertEqual(self.read("log"), LOG)
-        self.assertEqual(self.files(), ["c.yaml", "link", "log", "twin"])
 
     def test_a_file_is_one_also_as_standard_input_or_output(self):
         self.write("log", LOG)

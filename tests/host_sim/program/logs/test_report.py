@@ -4,7 +4,6 @@ import json
 import pathlib
 import re
 import resource
-import shutil
 import unittest
 
 import hostsim
@@ -51,11 +50,6 @@ class Written(hostsim.Case):
         self.assertTrue(out.startswith("<!doctype html>"), out[:80])
         self.assertTrue(out.endswith("</html>\n"), out[-80:])
 
-    def test_the_same_run_makes_the_same_page(self):
-        self.run_good("replay", "--report", "a.html", EXAMPLE)
-        self.run_good("replay", "--report", "b.html", EXAMPLE)
-        self.assertEqual(self.read("a.html"), self.read("b.html"))
-
     def test_a_gateway_has_both_sides(self):
         self.write("log", traffic.log(traffic.frames(3000, engage_ms=1000, ai_interface="can1")))
         self.run_good("replay", "--topology", "gateway", "--ai-if", "can1", "--report", "r.html", "log")
@@ -63,13 +57,6 @@ class Written(hostsim.Case):
         self.assertEqual(data["about"]["interfaces"], ["can0", "can1"])
         self.assertTrue(data["about"]["gateway"])
         self.assertIn("throttle_command", data["series"]["overview"]["signals"])
-
-    def test_a_name_is_only_text(self):
-        name = "<img src=x onerror=alert(1)>.log"
-        shutil.copy(EXAMPLE, self.folder / name)
-        self.run_good("replay", "--report", "r.html", name)
-        self.assertNotIn("<img", self.read("r.html"))
-        self.assertEqual(data_of(self.read("r.html"))["about"]["name"], name)
 
 
 class Refused(hostsim.Case):

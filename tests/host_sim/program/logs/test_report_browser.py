@@ -245,15 +245,6 @@ class Report(hostsim.Case):
             self.assertEqual(self.browser.run("document.querySelector('.tl-picture').getBoundingClientRect().width"), width)
             self.assertEqual(self.browser.complaints(), [])
 
-    def test_without_scripts_the_sentence_is_there(self):
-        self.browser.call("Emulation.setScriptExecutionDisabled", value=True)
-        self.addCleanup(self.browser.call, "Emulation.setScriptExecutionDisabled", value=False)
-        self.browser.go(self.page("silence"))
-        document = self.browser.call("DOM.getDocument")["root"]["nodeId"]
-        node = self.browser.call("DOM.querySelector", nodeId=document, selector="#verdict")["nodeId"]
-        html = self.browser.call("DOM.getOuterHTML", nodeId=node)["outerHTML"]
-        self.assertIn(PAGES["silence"][2], html)
-
 
 if __name__ == "__main__":
     if browser.find() is None:
