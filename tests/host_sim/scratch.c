@@ -25,20 +25,14 @@ const char *scratch_path(const char *name) {
     return path;
 }
 
-void scratch_open(void) {
-    (void)snprintf(folder, sizeof folder, "/tmp/host_sim_test.XXXXXX");
-    TEST_ASSERT_NOT_NULL(mkdtemp(folder));
-    said_fd = open(scratch_path(SAID), O_RDWR | O_CREAT | O_TRUNC, 0600);
-    TEST_ASSERT_TRUE(said_fd >= 0);
-    (void)fflush(stderr);
-    real_stderr = dup(STDERR_FILENO);
-    (void)dup2(said_fd, STDERR_FILENO);
-}
-
-void scratch_close(void) {
+static void close_folder(void) {
+    if (real_stderr < 0) {
+        return;
+    }
     (void)fflush(stderr);
     (void)dup2(real_stderr, STDERR_FILENO);
     (void)close(real_stderr);
+    real_stderr = -1;
     (void)close(said_fd);
     DIR *all = opendir(folder);
     for (struct dirent *entry = readdir(all); entry != NULL; entry = readdir(all)) {
@@ -46,6 +40,22 @@ void scratch_close(void) {
     }
     (void)closedir(all);
     (void)rmdir(folder);
+}
+
+void scratch_open(void) {
+    static bool is_open;
+    close_folder();
+    if (!is_open) {
+        (void)atexit(close_folder);
+        is_open = true;
+    }
+    (void)snprintf(folder, sizeof folder, "/tmp/host_sim_test.XXXXXX");
+    TEST_ASSERT_NOT_NULL(mkdtemp(folder));
+    said_fd = open(scratch_path(SAID), O_RDWR | O_CREAT | O_TRUNC, 0600);
+    TEST_ASSERT_TRUE(said_fd >= 0);
+    (void)fflush(stderr);
+    real_stderr = dup(STDERR_FILENO);
+    (void)dup2(said_fd, STDERR_FILENO);
 }
 
 const char *scratch_write(const char *name, const void *bytes, size_t size) {

@@ -7,11 +7,8 @@
 
 #define SCRATCH_TEXT_MAX 262144u
 
-/* Make the folder, and keep standard error in it. For setUp(). */
+/* Make the folder, and keep standard error in it. For setUp(): that of the test before, and at last this one, is removed. */
 void scratch_open(void);
-
-/* Remove it all. For tearDown(). */
-void scratch_close(void);
 
 /* Path of a file in the folder; is overwritten by the fourth call after it. */
 const char *scratch_path(const char *name);

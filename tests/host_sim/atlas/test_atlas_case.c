@@ -11,9 +11,6 @@ void setUp(void) {
     text_clear(&text);
 }
 
-void tearDown(void) {
-}
-
 static bool exists(atlas_state_t state, bool gateway, agv_fault_t first, agv_fault_t second, uint32_t distance) {
     for (uint32_t number = 0u; number < atlas_case_count(); number++) {
         atlas_case_t pair;

@@ -18,9 +18,6 @@ void setUp(void) {
                         .state = ATLAS_ACTIVE};
 }
 
-void tearDown(void) {
-}
-
 static void expect(atlas_weakness_t weakness) {
     TEST_ASSERT_EQUAL(weakness, atlas_judge(&of, &pair, &FIRST, &SECOND));
     TEST_ASSERT_EQUAL(weakness, atlas_judge(&of, &pair, &SECOND, &FIRST));

@@ -22,10 +22,6 @@ void setUp(void) {
     agv_config_defaults(&config);
 }
 
-void tearDown(void) {
-    scratch_close();
-}
-
 static bool is_read(void) {
     text.used = 0u;
     text_add(&text, "%sexpect: {states: []}\n", plan.head.bytes);

@@ -27,10 +27,6 @@ void setUp(void) {
     given.word = -1;
 }
 
-void tearDown(void) {
-    scratch_close();
-}
-
 static bool count(void *ctx, const char *value) {
     (void)ctx;
     given.times++;

@@ -11,9 +11,6 @@ void setUp(void) {
     beat = (message_beat_t){0};
 }
 
-void tearDown(void) {
-}
-
 void test_senders(void) {
     TEST_ASSERT_EQUAL(MESSAGE_FROM_AI, message_sender(AGV_MSG_STEERING_COMMAND));
     TEST_ASSERT_EQUAL(MESSAGE_FROM_VCU, message_sender(AGV_MSG_WHEEL_SPEED));

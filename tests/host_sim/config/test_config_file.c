@@ -20,10 +20,6 @@ void setUp(void) {
     agv_config_defaults(&defaults);
 }
 
-void tearDown(void) {
-    scratch_close();
-}
-
 static bool load(const char *text) {
     static char path[256];
     agv_config_defaults(&config);

@@ -16,10 +16,6 @@ void setUp(void) {
     scratch_open();
 }
 
-void tearDown(void) {
-    scratch_close();
-}
-
 static bool reads(const char *line) {
     return event_line_read(line, strlen(line), &event);
 }

@@ -25,7 +25,6 @@ void tearDown(void) {
     output_discard(output);
     free(output);
     free(session);
-    scratch_close();
 }
 
 static const char *lines(void) {

@@ -15,7 +15,6 @@ void setUp(void) {
 
 void tearDown(void) {
     output_discard(&output);
-    scratch_close();
 }
 
 static const char *written(void) {

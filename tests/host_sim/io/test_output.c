@@ -25,7 +25,6 @@ void tearDown(void) {
     output_discard(output);
     free(output);
     interrupt_release();
-    scratch_close();
 }
 
 static void write_text(const char *text) {
@@ -157,6 +156,7 @@ void test_a_file_has_one_role(void) {
     (void)snprintf(a, sizeof a, "%s", scratch_write("a", "x", 1));
     (void)snprintf(dotted, sizeof dotted, "%s", scratch_path("./a"));
     TEST_ASSERT_EQUAL_INT(0, symlink("a", scratch_path("link")));
+    TEST_ASSERT_EQUAL_INT(0, link(a, scratch_path("twin")));
     TEST_ASSERT_TRUE(are_distinct(a, scratch_path("b"), scratch_path("c")));
     TEST_ASSERT_TRUE(are_distinct(a, NULL, NULL));
     TEST_ASSERT_TRUE(are_distinct("-", "-", NULL)); /* standard input and output */
@@ -166,6 +166,7 @@ void test_a_file_has_one_role(void) {
     TEST_ASSERT_FALSE(are_distinct(a, dotted, NULL));
     TEST_ASSERT_NOT_NULL(strstr(scratch_said(), "LOG and --out are the same file"));
     TEST_ASSERT_FALSE(are_distinct(a, scratch_path("link"), NULL));
+    TEST_ASSERT_FALSE(are_distinct(a, scratch_path("twin"), NULL));
     TEST_ASSERT_FALSE(are_distinct(a, scratch_path("b"), scratch_path("./b")));
     TEST_ASSERT_FALSE(are_distinct(a, "-", "/dev/stdout"));
 }

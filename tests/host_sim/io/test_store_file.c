@@ -33,7 +33,6 @@ void tearDown(void) {
     free(recorder);
     free(loaded_recorder);
     free(output);
-    scratch_close();
 }
 
 static void fill(void) {

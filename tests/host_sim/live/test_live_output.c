@@ -23,7 +23,6 @@ void tearDown(void) {
     output_discard(&output->lines);
     free(output);
     interrupt_release();
-    scratch_close();
 }
 
 /* Put a line of so many bytes. Returns whether there was room. */

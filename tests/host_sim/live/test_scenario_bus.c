@@ -17,10 +17,6 @@ void setUp(void) {
     scratch_open();
 }
 
-void tearDown(void) {
-    scratch_close();
-}
-
 static void read_scenario(const char *text) {
     TEST_ASSERT_TRUE_MESSAGE(scenario_read_text(&scenario, "s.yaml", text, NULL), scratch_said());
 }

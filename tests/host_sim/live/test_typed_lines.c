@@ -21,7 +21,6 @@ void tearDown(void) {
     if (ends[1] >= 0) {
         (void)close(ends[1]);
     }
-    scratch_close();
 }
 
 static void type(const char *text) {

@@ -18,10 +18,6 @@ void setUp(void) {
     memset(&words, 0, sizeof words);
 }
 
-void tearDown(void) {
-    scratch_close();
-}
-
 /* It is refused with one line, which begins with what was typed. */
 static void refused_when_typed(const char *line, const char *said) {
     char expected[2u * VEHICLE_WORDS_MAX];

@@ -22,7 +22,6 @@ void setUp(void) {
 void tearDown(void) {
     candump_close(log_file);
     free(log_file);
-    scratch_close();
 }
 
 static void open_text(const char *text, size_t size, bool skip_bad) {

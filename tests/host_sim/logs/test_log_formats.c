@@ -23,7 +23,6 @@ void setUp(void) {
 void tearDown(void) {
     candump_close(log_file);
     free(log_file);
-    scratch_close();
 }
 
 static void open_bytes(const void *bytes, size_t size) {

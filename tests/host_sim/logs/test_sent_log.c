@@ -23,7 +23,6 @@ void tearDown(void) {
     output_discard(output);
     free(output);
     free(sent);
-    scratch_close();
 }
 
 static void add(hal_can_side_t side, uint32_t id, uint64_t stamp_us) {

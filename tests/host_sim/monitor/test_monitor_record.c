@@ -15,7 +15,6 @@ void setUp(void) {
 
 void tearDown(void) {
     (void)monitor_record_end(&record);
-    scratch_close();
 }
 
 static void add(uint32_t id, uint8_t flags, uint8_t length) {

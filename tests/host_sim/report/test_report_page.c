@@ -30,7 +30,6 @@ void tearDown(void) {
     free(output);
     why_free(why);
     series_free(series);
-    scratch_close();
 }
 
 static const char *text(void) {

@@ -16,10 +16,6 @@ void setUp(void) {
     memset(&counters, 0, sizeof counters);
 }
 
-void tearDown(void) {
-    scratch_close();
-}
-
 /* Begin with these expectations; the run takes 1000 ms. */
 static void expect(const char *text) {
     static char file[4000];

@@ -19,10 +19,6 @@ void setUp(void) {
     memset(&events, 0, sizeof events);
 }
 
-void tearDown(void) {
-    scratch_close();
-}
-
 #define HEAD "name: n\nshows: [SUP-2]\nduration_ms: 1s\n"
 
 static bool read_text(const char *text) {

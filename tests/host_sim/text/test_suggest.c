@@ -5,12 +5,6 @@
 
 #define COMMANDS "campaign|config|demo|monitor|recorder|replay|run|scenario|survey|vehicle"
 
-void setUp(void) {
-}
-
-void tearDown(void) {
-}
-
 static void check(const char *words, const char *written, const char *expected) {
     char text[SUGGEST_SIZE];
     TEST_ASSERT_EQUAL_STRING_MESSAGE(expected, suggest_from(words, written, text), written);
