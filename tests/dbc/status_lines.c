@@ -15,7 +15,7 @@
 
 #include "agv/names.h"
 #include "agv/supervisor.h"
-#include "null_hal.h"
+#include "hal_sim/sim_hal.h"
 #include "traffic.h"
 
 enum { ENGAGED_MS = 1037, FAULT_MS = 1837, CONFIRMED_MS = 1937, END_MS = 3000 };
@@ -23,7 +23,10 @@ enum { ENGAGED_MS = 1037, FAULT_MS = 1837, CONFIRMED_MS = 1937, END_MS = 3000 };
 enum { STATUS_ID = 0x7F0 };
 
 typedef struct {
-    hal_t hal;
+    struct hal hal;
+    sim_store_t store;
+    bool is_kept; /* a status frame was sent */
+    hal_can_frame_t kept;
     agv_supervisor_t supervisor;
     agv_ports_t ports;
     traffic_message_t traffic[TRAFFIC_MESSAGES];
@@ -35,13 +38,13 @@ static agv_recorder_t recorder;
 /* The status frame that the last call sent, if it did, and what the supervisor reports now. */
 static void print_frame(run_t *run) {
     const agv_fault_t reason = agv_supervisor_first_reason(&run->supervisor);
-    if (!run->hal.is_kept) {
+    if (!run->is_kept) {
         return;
     }
-    run->hal.is_kept = false;
+    run->is_kept = false;
     fputs("frame ", stdout);
-    for (uint32_t i = 0; i < run->hal.kept.length; i++) {
-        printf("%02x", run->hal.kept.data[i]);
+    for (uint32_t i = 0; i < run->kept.length; i++) {
+        printf("%02x", run->kept.data[i]);
     }
     printf(" %s %s %s %" PRIu32 "\n", agv_state_name(agv_supervisor_state(&run->supervisor)),
            (reason == AGV_FAULT_NONE) ? "none" : agv_fault_name(reason),
@@ -67,10 +70,20 @@ static void fail(run_t *run) {
     }
 }
 
+static void keep(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
+    run_t *run = ctx;
+    if ((side == HAL_CAN_VEHICLE) && (frame->id == STATUS_ID)) {
+        run->kept = *frame;
+        run->is_kept = true;
+    }
+}
+
 static void start(run_t *run) {
+    const sim_hal_config_t hal = {.watchdog_ms = SIM_HAL_WATCHDOG_OFF, .store = &run->store};
     agv_config_t config;
     memset(run, 0, sizeof *run);
-    run->hal.kept_id = STATUS_ID;
+    sim_store_init(&run->store);
+    sim_hal_init_direct(&run->hal, &hal, 1, keep, run);
     run->ports = (agv_ports_t){.hal = &run->hal, .recorder = &recorder};
     agv_config_defaults(&config);
     traffic_address(run->traffic, &config);
@@ -88,6 +101,7 @@ static void drive(bool is_confirmed) {
         if (run.now_ms == FAULT_MS) {
             fail(&run);
         }
+        sim_hal_set_now_ms(&run.hal, run.now_ms);
         send_due(&run);
         agv_supervisor_receive_alive(&run.supervisor);
         agv_supervisor_tick(&run.supervisor, &run.ports, run.now_ms);
