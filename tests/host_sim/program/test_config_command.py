@@ -50,11 +50,6 @@ class Listing(hostsim.Case):
     def test_no_line_is_wider_than_a_terminal(self):
         self.assertEqual([line for line in self.run_good("config").stdout.splitlines() if len(line) > 100], [])
 
-    def test_what_is_listed_is_taken_back(self):
-        text = self.run_good("config").stdout
-        self.write("c.yaml", text)
-        self.assertEqual(self.run_good("config", "--config", "c.yaml").stdout, text)
-
     def test_a_changed_configuration_is_taken_back(self):
         self.write("a.yaml", "topology: gateway\nown_heartbeat: frozen\nid_set: table\nstatus_frame_id: 0x7A0\n"
                              "class_remote_signal_lost: warn\nclass_store_invalid: trip\nshadow: on\nid_gear_command: 361\n")

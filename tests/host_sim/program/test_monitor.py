@@ -38,13 +38,6 @@ class Screen(hostsim.Case):
         tmux.press("q")
         self.assertEqual(tmux.exit_status(), 0)
 
-    def test_160_by_50_shows_more(self):
-        tmux = self.open(160, 50, "--log", EXAMPLE)
-        lines = tmux.wait_for("END")
-        self.assertRegex(lines[13], "^067h steering_status .* supply 12.00 V  angle 0.0 deg  torque_raw 0  speed_raw 0$")
-        self.assertIn("363h mode: manual -> autopilot", "\n".join(lines))
-        self.assertIn("shadow     ACTIVE -> TRIPPED: STEERING_COMMAND_TIMEOUT", "\n".join(lines))
-
     def test_colours_and_none(self):
         red, grey = "\033[31m", "\033[90m"
         with_colours = "\n".join(self.colours(NO_COLOR=""))

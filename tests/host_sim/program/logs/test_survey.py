@@ -247,11 +247,6 @@ class Identifiers(Case):
         result = self.run_good("replay", "--config", "config.yaml", "--events", "events.jsonl", "log")
         self.assertGreater(result.summary()["supervised_ms"], 39000)
 
-    def test_other_identifiers_and_other_cycles(self):
-        survey = self.survey(other_vehicle.frames(self.OTHER, self.SLOW))
-        self.assertEqual(self.proposed(), self.OTHER)
-        self.assertEqual(self.message(survey, "steering_command")["id"], "0E5")
-
     def test_a_computer_that_fails_shows_which_commands_are_its(self):
         """The vehicle obeys at once, so that commands and statuses change together."""
         at_once = {"lag_ms": 0, "cycles": self.SLOW}
