@@ -14,6 +14,8 @@ options_result_t analysis_options_parse(const analysis_command_t *command, int a
     option_t config_rows[CONFIG_OPTIONS];
     option_t analysis_rows[ANALYSIS_OPTIONS];
     config_options_init(config, config_rows);
+    option_t *shadow = &config_rows[CONFIG_OPTIONS - 1u];
+    shadow->help = (command->shadow_help != NULL) ? command->shadow_help : shadow->help;
     analysis_options_init(analysis, analysis_rows);
     const option_group_t groups[] = {
         {.title = "Options (FILE may be -, standard output)", .options = analysis_rows, .count = ANALYSIS_OPTIONS},

@@ -21,9 +21,11 @@ void analysis_options_init(analysis_paths_t *options, option_t rows[ANALYSIS_OPT
 typedef struct {
     const char *usage;
     const char *summary;
-    const char *operand;      /**< the file: "LOG" */
-    const char *config_title; /**< of the group of the configuration */
-    const option_t *rows;     /**< its own options */
+    const char *operand; /**< the file: "LOG" */
+    const char *config_title;
+    const char *shadow_help;
+    /**< of the option --shadow; NULL: as in every command */ /**< of the group of the configuration */
+    const option_t *rows;                                     /**< its own options */
     size_t row_count;
     const option_example_t *examples;
     size_t example_count;

@@ -83,7 +83,7 @@ bool campaign_print_table(const campaign_samples_t *samples) {
     }
     (void)printf("ms after the cause:                    first safe frame           confirmed output\n"
                  "%-26s %8s %9s %9s %9s %9s %9s %7s\n",
-                 "fault", "runs", "least", "median", "most", "most", "most", "broken");
+                 "fault", "runs", "min", "median", "max", "max", "max", "broken");
     for (size_t row = 0u; row < CAMPAIGN_ROW_COUNT; row++) {
         const line_t line = sum_up(samples, row, safe);
         broken += line.broken;

@@ -33,5 +33,5 @@ bool fault_option_take(const char *option, const char *name, const campaign_row_
                       (meant[0] != '\0') ? meant : "; docs/faults.md lists them");
     }
     *row = campaign_row(fault);
-    return (*row != NULL) || report("%s: the simulated bus cannot cause %s", option, name);
+    return (*row != NULL) || report("%s: a campaign does not inject %s", option, name);
 }

@@ -94,7 +94,7 @@ static const option_t *find(parsing_t *parsing) {
         }
         if ((strlen(option->name) == length) && (memcmp(option->name, argument, length) == 0)) {
             if (parsing->given[i] && !option->adds_up) {
-                (void)report("%s: given twice", option->name);
+                (void)report("%s is given twice", option->name);
                 return NULL;
             }
             parsing->given[i] = true;

@@ -82,8 +82,9 @@ typedef struct {
 
 /** What a command takes. */
 typedef struct {
-    const char *usage;   /**< what follows "host_sim": "replay [OPTION]... LOG" */
-    const char *summary; /**< lines that say what it does, each ended by a line break */
+    const char *usage;    /**< what follows "host_sim": "replay [OPTION]... LOG" */
+    const char *or_usage; /**< another form of it, or NULL */
+    const char *summary;  /**< lines that say what it does, each ended by a line break */
     const option_group_t *groups;
     size_t group_count;
     size_t operands_min;

@@ -38,7 +38,11 @@ static void print_examples(const option_syntax_t *syntax) {
 }
 
 void options_print_help(const option_syntax_t *syntax) {
-    (void)printf("usage: host_sim %s\n\n%s", syntax->usage, syntax->summary);
+    (void)printf("usage: host_sim %s\n", syntax->usage);
+    if (syntax->or_usage != NULL) {
+        (void)printf("       host_sim %s\n", syntax->or_usage);
+    }
+    (void)printf("\n%s", syntax->summary);
     for (size_t g = 0u; g < syntax->group_count; g++) {
         const option_group_t *group = &syntax->groups[g];
         if (group->title != NULL) {

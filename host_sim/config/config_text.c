@@ -39,6 +39,10 @@ static bool may_be_chosen(agv_fault_t fault) {
     return (agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) == 0u;
 }
 
+static bool is_gateway_only(agv_fault_t fault) {
+    return (agv_fault_flags(fault) & AGV_FAULT_FLAG_GATEWAY) != 0u;
+}
+
 /** Which values weaken the supervision. */
 static void print_weakens(const agv_setting_info_t *info) {
     static const struct {
@@ -64,12 +68,16 @@ void config_print_yaml(const agv_config_t *config) {
         const agv_setting_info_t *info = agv_setting_info(i);
         char preset[CONFIG_VALUE_SIZE];
         char value[CONFIG_VALUE_SIZE];
+        char lowest[CONFIG_VALUE_SIZE];
+        char highest[CONFIG_VALUE_SIZE];
         config_value_text(info, info->preset, preset);
         config_value_text(info, agv_config_get(config, i), value);
         (void)printf("\n# %s\n", info->meaning);
         if (info->words == NULL) {
-            (void)printf("# %u to %u%s%s, default %s", info->lowest, info->highest, (info->unit[0] != '\0') ? " " : "",
-                         info->unit, preset);
+            config_value_text(info, info->lowest, lowest);
+            config_value_text(info, info->highest, highest);
+            (void)printf("# %s to %s%s%s, default %s", lowest, highest, (info->unit[0] != '\0') ? " " : "", info->unit,
+                         preset);
         } else {
             (void)printf("# %s, default %s", info->words, preset);
         }
@@ -77,13 +85,13 @@ void config_print_yaml(const agv_config_t *config) {
         (void)printf("%s\n", info->gateway_only ? "; gateway only" : "");
         (void)printf("%s: %s\n", info->name, value);
     }
-    (void)printf("\n# Class of each fault: trip|warn. A warning may be made a trip; a mandatory trip stays one.\n");
+    (void)printf("\n# Class of each fault: trip|warn. A mandatory class cannot be changed.\n");
     for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
         const agv_fault_t fault = (agv_fault_t)i;
         char key[CONFIG_CLASS_KEY_SIZE];
         config_class_key(fault, key);
-        (void)printf("%s: %s  # default %s%s\n", key, class_word(config, fault), default_word(fault),
-                     may_be_chosen(fault) ? "" : ", mandatory");
+        (void)printf("%s: %s  # default %s%s%s\n", key, class_word(config, fault), default_word(fault),
+                     may_be_chosen(fault) ? "" : ", mandatory", is_gateway_only(fault) ? "; gateway only" : "");
     }
 }
 

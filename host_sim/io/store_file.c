@@ -132,7 +132,7 @@ bool store_file_may_replace(const char *path) {
         (void)fclose(stream);
     }
     return (memcmp(begin, FIRST_WORD, size) == 0) ||
-           report("%s: no store, which begins with '" FIRST_WORD "', so it is not overwritten; "
+           report("%s: not a store file (it does not begin with '" FIRST_WORD "'), so it is not overwritten; "
                   "give a store or a new file",
                   path);
 }

@@ -223,7 +223,7 @@ static void print_not_supervised(const live_t *live) {
     if (live->missing != 0u) {
         text_add(&text, ", missing: %s", missing_text(live->missing, words));
     } else {
-        text_add(&text, "; it ended before startup_timeout_ms: --why says what was missing");
+        text_add(&text, "; the run ended before startup_timeout_ms: --why names what was missing");
     }
     why_text_line(label, (int)strlen(label), text.bytes);
 }

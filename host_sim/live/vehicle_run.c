@@ -45,7 +45,7 @@ static void do_action(run_t *run, const vehicle_words_t *words) {
     }
     if (!done) {
         vehicle_show_clear(&run->show, false);
-        (void)report("%s %s: not done; %u rogue nodes are already sending", words->step.actor, words->what,
+        (void)report("%s %s: refused; %u rogue nodes are already sending", words->step.actor, words->what,
                      VEHICLE_ROGUES_MAX);
     }
 }

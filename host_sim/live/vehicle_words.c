@@ -188,7 +188,7 @@ vehicle_command_t vehicle_words_command(const char *text) {
         if (*rest == '\0') {
             return (vehicle_command_t)i;
         }
-        (void)report("'%.*s': '%s' stands alone on its line", SHOWN_MAX, text, commands[i]);
+        (void)report("'%.*s': '%s' takes no argument", SHOWN_MAX, text, commands[i]);
         return VEHICLE_COMMAND_BAD;
     }
     return VEHICLE_COMMAND_NONE;

@@ -220,7 +220,8 @@ static const char *parse_line(candump_log_t *log, const char *line, size_t lengt
         return "the line is longer than 16383 characters";
     }
     if ((log->format == CANDUMP_FORMAT_UNKNOWN) && (line[0] != '(')) {
-        return "unknown log format; readable are candump -l, candump -t a and Vector ASC, each also gzip'd";
+        return "unknown log format; supported: candump -l, candump -t a, -t A or -t z, and Vector ASC, also compressed "
+               "with gzip";
     }
     switch (log->format) {
     case CANDUMP_FORMAT_SCREEN:
@@ -267,7 +268,7 @@ static const char *check_stamp(candump_log_t *log, uint64_t stamp_us) {
 
 static void leave_out(candump_log_t *log) {
     log->skipped++;
-    note("%s:%" PRIu64 ": the log ends in this line, which may be cut off; it is left out", log->name, log->line);
+    note("%s:%" PRIu64 ": the last line may be cut off; it is left out", log->name, log->line);
 }
 
 candump_result_t candump_next(candump_log_t *log, candump_record_t *record) {

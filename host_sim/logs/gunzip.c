@@ -79,14 +79,14 @@ static ssize_t read_packed(gunzip_t *gunzip, gunzip_source_fn *source, void *ctx
             size_t count = 0u;
             const int result = unpack(gunzip, bytes, size, &count);
             if ((result != Z_OK) && (result != Z_STREAM_END) && (result != Z_BUF_ERROR)) {
-                *wrong = "the gzip'd data is damaged";
+                *wrong = "the gzip data is damaged";
                 return -1;
             }
             if (count > 0u) {
                 return (ssize_t)count;
             }
         } else if (gunzip->at_end) {
-            *wrong = gunzip->in_member ? "the gzip'd file is cut off" : NULL;
+            *wrong = gunzip->in_member ? "the gzip file is cut off" : NULL;
             return gunzip->in_member ? -1 : 0;
         } else if (!refill(gunzip, source, ctx)) {
             return -1;

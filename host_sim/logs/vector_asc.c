@@ -297,7 +297,7 @@ static const char *take_header(vector_asc_t *asc, log_token_t first, rest_t *res
     case LINE_OTHER:
         return LOG_NO_FRAME;
     default:
-        return "neither a frame nor another line of an ASC log";
+        return "not a line of an ASC log";
     }
 }
 

@@ -139,12 +139,12 @@ static void take_counter(monitor_t *monitor, monitor_row_t *row, const uint8_t d
     if (message_beats(&row->counter, &monitor->config, row->message, counter)) {
         if (row->is_stuck) {
             row->is_stuck = false;
-            say(monitor, row, t_us, MONITOR_GOOD, "counts again after", (t_us - row->counter_us) / US_PER_MS);
+            say(monitor, row, t_us, MONITOR_GOOD, "counter changes again after", (t_us - row->counter_us) / US_PER_MS);
         }
         row->counter_us = t_us;
     } else if (!row->is_stuck && !row->is_late && (t_us > row->counter_us + row->deadline_us)) {
         row->is_stuck = true;
-        say(monitor, row, t_us, MONITOR_BAD, "stuck: counter does not count for", row->deadline_us / US_PER_MS);
+        say(monitor, row, t_us, MONITOR_BAD, "stuck: counter unchanged for", row->deadline_us / US_PER_MS);
     }
 }
 

@@ -158,7 +158,7 @@ static ssize_t read_all(const char *path, const char *name, char **text) {
     if (count < 0) {
         (void)report("%s: %s", name, strerror(errno));
     } else if (size > FILE_MAX) {
-        (void)report("%s: larger than 16 MiB, which no flight recorder is", name);
+        (void)report("%s: larger than 16 MiB: not a flight recorder", name);
         count = -1;
     } else {
         /* read to its end */
@@ -215,7 +215,9 @@ bool recorder_file_read(const char *path, recorder_events_t *events) {
     free(text);
     if (good && (events->count == 0u)) {
         good = report(
-            "%s: contains no flight recorder event: neither 'agv-event' lines of 'agv dump' nor a memory dump", name);
+            "%s: contains no flight recorder event (lines 'agv-event' of 'agv dump', a memory dump, or a --store "
+            "file)",
+            name);
     }
     if (good) {
         sort(events);

@@ -120,8 +120,8 @@ static bool hint_other_vehicle(text_t *text, const replay_clues_t *clues) {
     add_some(text, shown, count, more);
     text_add(
         text,
-        " received, %zu of the %u messages of the protocol: another vehicle? Each identifier is a setting (id_...), "
-        "and host_sim survey proposes them",
+        " received, %zu of the %u messages of the protocol: another vehicle? Each identifier is a setting (id_...); "
+        "host_sim survey proposes identifiers",
         known_heard(clues), (unsigned)AGV_MSG_COUNT);
     return true;
 }
@@ -244,13 +244,12 @@ static bool hint_sides(text_t *text, const replay_clues_t *clues) {
         return false;
     }
     if ((status != 0u) && (status == ai_side) && is_single(other_commands)) {
-        text_add(text, "status messages come on the AI side (%s), commands on the other: --ai-if ",
-                 clues->ai_interface);
+        text_add(text, "the sides are swapped (status messages come on %s): --ai-if ", clues->ai_interface);
         add_interfaces(text, clues->heard, other_commands);
     } else {
         text_add(text, "commands come on the vehicle side (");
         add_interfaces(text, clues->heard, other_commands);
-        text_add(text, "): recorded behind a gateway? Leave out the frames that it sent");
+        text_add(text, "): recorded on the vehicle side of a gateway? Remove the frames that the gateway sent");
     }
     return true;
 }

@@ -30,8 +30,8 @@ static bool has_pending(const replay_text_t *replay) {
 /** Add how long the log is, its interfaces and its time of day. */
 static void add_head(text_t *text, const replay_text_t *replay) {
     const replay_heard_t *heard = replay->heard;
-    text_add(text, "%" PRIu64 ".%03" PRIu64 " s on ", replay->duration_us / US_PER_S,
-             (replay->duration_us % US_PER_S) / US_PER_MS);
+    const uint64_t ms = shown_ms(replay->first_us, replay->first_us + replay->duration_us);
+    text_add(text, "%" PRIu64 ".%03" PRIu64 " s on ", ms / MS_PER_S, ms % MS_PER_S);
     for (size_t i = 0u; i < heard->name_count; i++) {
         text_add(text, "%s%s", (i > 0u) ? ", " : "", heard->names[i]);
     }
@@ -115,7 +115,8 @@ static bool add_not_supervised(text_t *text, const replay_text_t *replay) {
     if (never) {
         text_add(text, "never left INIT");
         if (why_missing(replay->why) == 0u) {
-            text_add(text, ": the log is too short, a start takes %u ms", (unsigned)replay->config->init_hold_ms);
+            text_add(text, ": the log is too short, a start takes more than %u ms",
+                     (unsigned)replay->config->init_hold_ms);
         }
     } else {
         why_words_time(text, why_state_us(replay->why, WHY_INIT));
@@ -134,9 +135,9 @@ bool replay_text_goes_back(text_t *text, const replay_heard_t *heard) {
     }
     text_add(text, "the time stamps go back by ");
     why_words_time(text, heard->back_us);
-    text_add(text, " at line %" PRIu64 "; what follows counts at ", heard->back_line);
+    text_add(text, " at line %" PRIu64 ": from there on, earlier lines get the time ", heard->back_line);
     why_words_time(text, heard->back_at_us);
-    text_add(text, ": cut or sort the log there");
+    text_add(text, "; cut the log there, or sort it");
     return true;
 }
 
@@ -166,7 +167,7 @@ static void print_not_judged(const replay_text_t *replay) {
 static bool add_pending(text_t *text, const replay_text_t *replay, agv_fault_t fault) {
     const bool pending = why_words_pending(text, replay->why, fault);
     if (pending) {
-        text_add(text, ": the log ends first");
+        text_add(text, ": the log ended too early");
     }
     return pending;
 }

@@ -38,9 +38,9 @@ const char *sentence_missing(unsigned index) {
         "the cause of a trip is present",
         "the vehicle does not stand",
         "the VCU does not report manual",
-        "remote button 1 is pressed, or was pressed too early",
+        "the reset button was pressed before the trip, or its signal was lost",
         "a status message is missing or late",
-        "the throttle is not idle",
+        "the throttle status is above idle, invalid or missing",
         "the button was held for too long",
         "the contact of the safety output does not read open",
     };
@@ -72,7 +72,7 @@ static const char *at(uint64_t t_us, char text[TIME_SIZE]) {
 /** A duration: "0.3 ms", "272 ms", "1.254 s". From 10 ms on it is the difference of the times as they are shown. */
 static const char *lasting(uint64_t from_us, uint64_t to_us, char text[TIME_SIZE]) {
     const uint64_t tenths = (to_us - from_us) / US_PER_TENTH;
-    const uint64_t ms = (to_us / US_PER_MS) - (from_us / US_PER_MS);
+    const uint64_t ms = shown_ms(from_us, to_us);
     if (tenths < (uint64_t)EXACT_TENTHS) {
         (void)snprintf(text, TIME_SIZE, "%" PRIu64 ".%" PRIu64 " ms", tenths / 10u, tenths % 10u);
     } else if (ms < MS_PER_S) {
@@ -119,7 +119,10 @@ static bool never_came(const why_trip_t *trip) {
            !trip->from_earlier_run;
 }
 
-/** What failed. The words of a silence are of a message that came before. */
+/* The phrase of every silence has these words: they fit a message that came before. */
+#define NO_LONGER "no longer "
+
+/** What failed. */
 static void say_phrase(char text[SENTENCE_SIZE], const why_trip_t *trip) {
     const char *phrase = sentence_phrase(trip->reason);
     if (trip->wrong_steps) {
@@ -127,17 +130,15 @@ static void say_phrase(char text[SENTENCE_SIZE], const why_trip_t *trip) {
         say_message(text, trip);
         say(text, " did not always step by 1 to 3");
     } else if (why_was_withheld(trip)) {
-        say(text, "the gateway did not pass ");
+        say(text, "the gateway withheld ");
         say_message(text, trip);
-        say(text, " on, while the VCU did not report autopilot");
+        say(text, ", because the VCU did not report autopilot");
     } else if (trip->refused.count > 0u) {
         say_message(text, trip);
         say(text, " came in a form that the protocol does not have");
     } else if (never_came(trip)) {
-        const char *const verb = strstr(phrase, "no longer ");
-        const char *const rest = (verb != NULL) ? verb + strlen("no longer ") : "";
-        const char *const end = (verb != NULL) ? verb : strstr(phrase, "fell silent");
-        say(text, "%.*s%s%s", (int)(end - phrase), phrase, (verb != NULL) ? "never " : "was never received", rest);
+        const char *const verb = strstr(phrase, NO_LONGER);
+        say(text, "%.*snever %s", (int)(verb - phrase), phrase, &verb[strlen(NO_LONGER)]);
     } else {
         say(text, "%s", phrase);
     }
@@ -175,7 +176,7 @@ static void say_silence(char text[SENTENCE_SIZE], const why_trip_t *trip) {
     if (trip->refused.count > 0u) {
         text_t refused = {.used = 0u};
         why_words_refused(&refused, trip);
-        say(text, " Of its frames %s.", refused.bytes);
+        say(text, " %s.", refused.bytes);
     }
 }
 
@@ -196,9 +197,9 @@ static void say_limit(char text[SENTENCE_SIZE], const agv_config_t *config, cons
     const uint16_t budget = budget_ms(config, trip->reason);
     const char *space = (text[0] != '\0') ? " " : "";
     if (budget > 0u) {
-        say(text, "%sThe limit is %s for %u ms in all.", space, limit_text(trip, limit), budget);
+        say(text, "%sThe limit of this fault is %s for %u ms in all.", space, limit_text(trip, limit), budget);
     } else {
-        say(text, "%sThe limit is %s.", space, limit_text(trip, limit));
+        say(text, "%sThe limit of this fault is %s.", space, limit_text(trip, limit));
     }
 }
 
@@ -213,7 +214,7 @@ static void say_cause(char text[SENTENCE_SIZE], const agv_config_t *config, cons
         return;
     }
     if (trip->cause_us != WHY_NEVER) {
-        say(text, trip->from_engagement ? "It counted from the engagement at %s on" : "It began at %s",
+        say(text, trip->from_engagement ? "The cause counted from the engagement at %s on" : "The cause began at %s",
             at(trip->cause_us, time));
         say(text, trip->at_the_latest ? " at the latest" : "");
         if ((trip->message != AGV_MSG_NONE) || (trip->id != WHY_NO_ID)) {
@@ -248,40 +249,48 @@ static void say_action(char text[SENTENCE_SIZE], const report_page_t *page, cons
     if (is_shadow) {
         say(text, " It sent nothing, because it runs in shadow mode.");
     } else if (trip->first_safe_us == WHY_NEVER) {
-        say(text, " It sent no frame until the end.");
+        say(text, " No safe command was sent until the end of the run.");
     } else {
         const uint64_t trip_us = sentence_trip_us(trip);
         const bool at_once = trip->first_safe_us < trip_us + (uint64_t)US_PER_TENTH;
         const bool parks = page->config->park == (uint16_t)AGV_PARK_AT_ONCE;
-        say(text, " %s%s it sent the first of the safe commands: %sthrottle 0, autopilot off%s.",
+        say(text, " %s%s it began to send the safe commands: %sthrottle 0, autopilot off",
             at_once ? "At once" : lasting(trip_us, trip->first_safe_us, time), at_once ? "" : " later",
-            parks ? "gear P, " : "", parks ? "" : ", and gear P when the wheels stand, or after 3 s");
+            parks ? "gear P, " : "");
+        if (!parks) {
+            say(text, ", and gear P when the wheels stand, or %u ms after the trip", page->config->park_timeout_ms);
+        }
+        say(text, ".");
     }
+}
+
+static bool stood_already(const why_trip_t *trip) {
+    return (trip->stopped_us != WHY_NEVER) && (trip->stopped_us < trip->t_us + STOOD_US);
 }
 
 static void say_outcome(char text[SENTENCE_SIZE], const report_page_t *page, const why_trip_t *trip) {
     char time[TIME_SIZE];
     if (page->is_recording) {
-        say(text,
-            "This is a recording, and a recording cannot obey: what the vehicle does after the trip is what it did "
-            "then.");
+        say(text, "This is a recording: the vehicle did not receive the supervisor's commands, and what it did after "
+                  "the trip "
+                  "is no reaction to them.");
     }
     if (trip->confirmed_us != WHY_NEVER) {
         say(text, "%sThe VCU reported gear P and autopilot off %s after the trip.", (text[0] != '\0') ? " " : "",
             lasting(sentence_trip_us(trip), trip->confirmed_us, time));
     }
     const char *space = (text[0] != '\0') ? " " : "";
-    if ((trip->stopped_us != WHY_NEVER) && (trip->stopped_us < trip->t_us + STOOD_US)) {
+    if (stood_already(trip)) {
         say(text, "%sThe vehicle stood already.", space);
     } else if (trip->stopped_us != WHY_NEVER) {
         say(text, "%sThe wheels stood %s after the trip.", space,
             lasting(sentence_trip_us(trip), trip->stopped_us, time));
     } else if (!page->is_recording) {
-        say(text, "%sThe wheels were not seen to stand until the end.", space);
+        say(text, "%sNo standstill of the wheels was reported until the end of the run.", space);
     }
     const bool is_resettable = (agv_fault_flags((uint32_t)trip->reason) & AGV_FAULT_FLAG_UNRESETTABLE) == 0u;
-    say(text, is_resettable ? " Only the operator ends this, by a reset at standstill and in manual."
-                            : " Only a power-on ends this.");
+    say(text, is_resettable ? " Only the operator can end the safe state, by a reset at standstill in manual."
+                            : " Only a power-on can end the safe state.");
 }
 
 void sentence_trip(sentence_t *sentence, const report_page_t *page, const why_trip_t *trip, uint64_t opened_us) {
@@ -289,6 +298,8 @@ void sentence_trip(sentence_t *sentence, const report_page_t *page, const why_tr
     const char *begin = "The supervisor stopped the vehicle";
     if (page->is_recording || (page->config->shadow == (uint16_t)AGV_SHADOW_ON)) {
         begin = "The supervisor would have stopped this vehicle";
+    } else if (stood_already(trip)) {
+        begin = "The supervisor keeps the vehicle at standstill";
     } else if (trip->stopped_us != WHY_NEVER) {
         begin = "The vehicle stands";
     }
@@ -303,7 +314,7 @@ void sentence_trip(sentence_t *sentence, const report_page_t *page, const why_tr
 
 static void say_missing(char text[SENTENCE_SIZE], const why_t *why) {
     const uint16_t missing = why_missing(why);
-    const char *between = " What kept it there: ";
+    const char *between = " The supervisor stayed in INIT because ";
     for (uint8_t bit = 0u; bit < 16u; bit++) {
         if ((missing & (1u << bit)) != 0u) {
             text_t details = {.used = 0u};
@@ -333,8 +344,8 @@ void sentence_no_trip(sentence_t *sentence, const why_t *why, uint64_t end_us) {
     say(sentence->headline, "No trip: the supervisor found no reason to stop the vehicle.");
     say(sentence->cause, "It supervised %s of %s.", at(supervised_us, supervised), at(end_us, whole));
     if (supervised_us < end_us) {
-        const uint64_t init_ms = (end_us / US_PER_MS) - (supervised_us / US_PER_MS);
-        say(sentence->cause, " The other %s it was in INIT.", at(init_ms * US_PER_MS, whole));
+        const uint64_t init_ms = shown_ms(supervised_us, end_us);
+        say(sentence->cause, " For the other %s it was in INIT.", at(init_ms * US_PER_MS, whole));
     }
     size_t in_init = 0u;
     for (size_t i = 0u; i < why_fault_count(why); i++) {

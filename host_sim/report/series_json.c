@@ -126,7 +126,7 @@ static json_t *notes_json(const series_changes_t *notes) {
                            : (change->a != 0u)                        ? "reset accepted"
                                                                       : "reset refused";
         if (change->kind == (uint8_t)AGV_EVENT_CRASH) {
-            what = "the run before was ended by its port";
+            what = "the previous run was ended by the port";
         }
         (void)snprintf(text, sizeof text, "%s%s%s", what, (change->missing != 0u) ? ", missing: " : "",
                        missing_text(change->missing, missing));

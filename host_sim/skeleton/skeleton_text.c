@@ -28,9 +28,10 @@ static void add_head(text_t *text, const skeleton_plan_t *plan) {
 
     text_add(text, "# Made by host_sim scenario --from ");
     add_log_name(text, facts->request->log);
-    text_add(text, ". The simulated vehicle stands in for that of the log; what is expected\n"
-                   "# is what the supervisor did with it. Before you keep the file, give every time its reason.\n"
-                   "name: \"");
+    text_add(text,
+             ". The simulated vehicle replaces the vehicle of the log, and the\n"
+             "# expectations are what the supervisor did. Before you keep the file, calculate every time yourself.\n"
+             "name: \"");
     add_log_name(text, facts->request->log);
     text_add(text, ": %s\"\nshows: [%s]\ndescription: |\n  The log: tripped at ", reason, reason);
     why_words_time(text, facts->trip.t_us);

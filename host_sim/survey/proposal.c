@@ -71,7 +71,7 @@ static void propose_deadline(proposal_t *proposal, const traffic_id_t *entry) {
         return;
     }
     if (watch->gaps.count < PROPOSAL_GAPS_MIN) {
-        note(proposal, "%03Xh %s: %" PRIu64 " gap%s%s, too few to judge its deadline", entry->id, name,
+        note(proposal, "%03Xh %s: %" PRIu64 " gap%s%s, too few to evaluate its deadline", entry->id, name,
              watch->gaps.count, words_plural(watch->gaps.count),
              (watch->when == TRAFFIC_ENGAGED) ? " while engaged" : "");
     } else {
@@ -83,7 +83,7 @@ static void propose_deadline(proposal_t *proposal, const traffic_id_t *entry) {
         if (value > info->preset) {
             (void)agv_config_set(&proposal->config, watch->setting, (uint16_t)value);
             reason(proposal, watch->setting,
-                   "%03Xh %s comes every %.1f ms, usually after %.1f ms at most: needs %" PRIu64 " ms", entry->id, name,
+                   "%03Xh %s: median gap %.1f ms, usual longest gap %.1f ms: needs %" PRIu64 " ms", entry->id, name,
                    ms_of_us(habit.cycle_us), ms_of_us(habit.usual_us), need_ms);
         }
         if (need_ms > info->highest) {
@@ -196,8 +196,8 @@ static void propose_status_id(proposal_t *proposal, const traffic_t *traffic) {
     for (size_t i = 0u; traffic_at(traffic, i) != NULL; i++) {
         const traffic_id_t *entry = traffic_at(traffic, i);
         if ((entry->message == message) && (entry->ranges[0].invalid == 0u) && (entry->count > 0u)) {
-            note(proposal, "%03Xh carries status frames of a supervisor: was one on the bus when this was recorded?",
-                 id);
+            note(proposal,
+                 "%03Xh carries status frames of a supervisor: was a supervisor on the bus during the recording?", id);
             return;
         }
     }

@@ -53,13 +53,15 @@ static void print_all(FILE *file, const proposal_t *proposal, const char *source
     if (print_settings(file, proposal) == 0u) {
         (void)fputc('\n', file);
         print_comment(file, "",
-                      (proposal->judged == 0u) ? "No message of the protocol came often enough to judge the defaults."
-                      : (proposal->note_count > 0u) ? "No setting needs another value so far. The notes below are open."
-                                                    : "The defaults fit.");
+                      (proposal->judged == 0u)
+                          ? "No message of the protocol came often enough to evaluate the defaults."
+                      : (proposal->note_count > 0u)
+                          ? "No setting needs another value, but the findings below must be explained first."
+                          : "The defaults fit.");
     }
     if (proposal->note_count > 0u) {
         (void)fputc('\n', file);
-        print_comment(file, "", "Findings for which no setting is relaxed; find the cause of each:");
+        print_comment(file, "", "Findings that change no setting. Find the cause of each:");
     }
     for (size_t i = 0u; i < proposal->note_count; i++) {
         print_comment(file, " -", proposal->notes[i]);

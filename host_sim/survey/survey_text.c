@@ -11,15 +11,16 @@ enum { MEDIAN = 500, P999 = 999, BITS_PER_WORD = 32, WORD_CHOICES = 256, LINE_SI
 
 static void print_head(const survey_result_t *result) {
     const observation_t *observation = &result->observation;
-    const double seconds = s_of_us(observation_us(observation));
+    const uint64_t ms = shown_ms(observation->first_us, observation->last_us);
+    const double seconds = (double)ms / (double)MS_PER_S;
     char interfaces[OBSERVATION_NAMES_SIZE];
     text_t text;
     if (observation_goes_back(observation, &text)) {
         (void)printf("NOT RELIABLE: %s\n", text.bytes);
     }
     observation_interfaces(observation, interfaces);
-    (void)printf("%s: %.3f s on %s, %" PRIu64 " frames", text_one_line(&text, result->source.name), seconds, interfaces,
-                 observation->frames);
+    (void)printf("%s: %.3f s on %s, %" PRIu64 " frame%s", text_one_line(&text, result->source.name), seconds,
+                 interfaces, observation->frames, words_plural(observation->frames));
     if (seconds > 0.0) {
         (void)printf(" (%.0f/s)", (double)observation->frames / seconds);
     }
@@ -48,11 +49,13 @@ static void print_load(const survey_result_t *result) {
     for (size_t side = 0u; side < (size_t)HAL_CAN_SIDES; side++) {
         const bus_load_t *load = &result->observation.loads[side];
         if (load->bits > 0u) {
-            (void)printf("load%s     %.1f to %.1f %% of %" PRIu32
-                         " bit/s (without and with the most stuff bits), busiest 1 s %.1f %%\n",
+            (void)printf("load%s     %.1f to %.1f %% of %" PRIu32 " bit/s (no stuff bits, to the most possible)",
                          sides[side], bus_load_percent(load->bits, us, bit_rate),
-                         bus_load_percent(load->stuffed_bits, us, bit_rate), bit_rate,
-                         bus_load_percent(bus_load_busiest(load), US_PER_S, bit_rate));
+                         bus_load_percent(load->stuffed_bits, us, bit_rate), bit_rate);
+            if (us >= (uint64_t)US_PER_S) {
+                (void)printf(", busiest second %.1f %%", bus_load_percent(bus_load_busiest(load), US_PER_S, bit_rate));
+            }
+            (void)putchar('\n');
         }
     }
 }
@@ -114,8 +117,8 @@ static void print_messages(const survey_result_t *result) {
             (void)printf("%03Xh   %-19s         -  not received\n", ids.of[message], signals_message_name(message));
         }
     }
-    (void)printf(
-        "* only while engaged. The deadline of a heartbeat counts from one change of its counter to the next.\n");
+    (void)printf("* this deadline counts only while engaged. The margin of a heartbeat is that of the longest time\n"
+                 "  between two changes of its counter.\n");
 }
 
 static void print_counters(const survey_result_t *result) {
@@ -157,8 +160,12 @@ static void print_range(const traffic_id_t *entry, size_t index) {
     } else if (range->valid > 0u) {
         const signal_value_t lowest = {.scaled = range->lowest};
         const signal_value_t highest = {.scaled = range->highest};
-        (void)snprintf(text, sizeof text, "%.*f to %.*f%s%s", info->decimals, signals_number(info, &lowest),
-                       info->decimals, signals_number(info, &highest), (info->unit[0] != '\0') ? " " : "", info->unit);
+        int used = 0;
+        if (range->lowest != range->highest) {
+            used = snprintf(text, sizeof text, "%.*f to ", info->decimals, signals_number(info, &lowest));
+        }
+        (void)snprintf(&text[used], sizeof text - (size_t)used, "%.*f%s%s", info->decimals,
+                       signals_number(info, &highest), (info->unit[0] != '\0') ? " " : "", info->unit);
     }
     (void)printf("  %03Xh  %-15s %s", entry->id, info->name, text);
     if (range->invalid > 0u) {
@@ -214,10 +221,14 @@ static void print_unknown(const survey_result_t *result) {
         count++;
         if (count <= (uint32_t)UNKNOWN_SHOWN_MAX) {
             (void)printf(entry->is_extended ? "  %08Xh" : "  %03Xh", entry->id);
-            (void)printf("%s %9" PRIu64 " frames, %.1f/s, %u to %u bytes, median gap %.2f ms\n",
-                         (entry->side == HAL_CAN_AI) ? " AI side" : "", entry->count,
-                         (seconds > 0.0) ? (double)entry->count / seconds : 0.0,
-                         (entry->count > 0u) ? entry->length_min : 0u, entry->length_max,
+            const unsigned shortest = (entry->count > 0u) ? entry->length_min : 0u;
+            (void)printf("%s %9" PRIu64 " frame%s, %.1f/s, ", (entry->side == HAL_CAN_AI) ? " AI side" : "",
+                         entry->count, words_plural(entry->count),
+                         (seconds > 0.0) ? (double)entry->count / seconds : 0.0);
+            if (shortest != entry->length_max) {
+                (void)printf("%u to ", shortest);
+            }
+            (void)printf("%u byte%s, median gap %.2f ms\n", entry->length_max, words_plural(entry->length_max),
                          ms_of_us(gaps_quantile_us(&entry->gaps, MEDIAN)));
         }
     }
@@ -257,7 +268,7 @@ static void print_candidates_of(uint32_t message, const identify_message_t *foun
         print_candidate(&found->candidates[i]);
     }
     if (found->left_out > 0u) {
-        (void)printf("    and %zu more, for which less speaks\n", found->left_out);
+        (void)printf("    and %zu more with weaker evidence\n", found->left_out);
     }
 }
 
@@ -275,8 +286,9 @@ static void print_candidates(const survey_result_t *result) {
         }
     }
     if (any) {
-        (void)printf("  Their senders may have been off. Or look up the identifiers in the vehicle's document, write\n"
-                     "  them to a file, for example \"id_gear_status: 0x123\", and survey again with --config FILE.\n");
+        (void)printf(
+            "  Their senders may have been off. Otherwise look up the identifiers in the vehicle's document,\n"
+            "  write them to a file, for example \"id_gear_status: 0x123\", and survey again with --config FILE.\n");
     }
 }
 
@@ -291,7 +303,7 @@ void survey_print(const survey_result_t *result, const char *yaml) {
     print_unknown(result);
     print_candidates(result);
     if (result->is_unread) {
-        (void)printf("\nThe messages with other identifiers are not judged yet: survey again with --config and the "
+        (void)printf("\nThe messages with other identifiers are not evaluated yet: survey again with --config and the "
                      "file below.\n");
     }
     (void)printf("\n%s", yaml);

@@ -66,7 +66,12 @@ static void print_then(const why_text_t *shown, const why_trip_t *trip) {
     text_t text = {.used = 0u};
     if (!shown->is_recorder) {
         const bool none = trip->first_safe_us == WHY_NEVER;
-        add_time(&text, none ? "no safe frame" : "first safe frame ", trip->first_safe_us);
+        const bool is_shadow = why_is_shadow(shown->why);
+        add_time(&text,
+                 !none       ? "first safe frame "
+                 : is_shadow ? "no safe frame (shadow mode)"
+                             : "no safe frame",
+                 trip->first_safe_us);
         text_add(&text, "; ");
     }
     const char *mark = shown->is_recorder ? "" : " (a recording cannot obey)"; /* behind the last that it explains */

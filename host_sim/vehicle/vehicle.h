@@ -174,7 +174,7 @@ typedef struct {
     int32_t angle_ddeg;
     uint8_t alarms; /**< of the VCU, AGV_VCU_ALARM_* */
     bool running[VEHICLE_NODES];
-    int32_t fastest_park_mm_s; /**< highest speed, without its sign, at which P was taken so far */
+    int32_t fastest_park_mm_s; /**< highest speed, without its sign, at which P was engaged so far */
 } vehicle_view_t;
 
 /** What the vehicle did when it last moved. Looking at it changes nothing, also not how a run goes on. */

@@ -40,6 +40,10 @@ why_t *why_new(const agv_config_t *config) {
     return why;
 }
 
+bool why_is_shadow(const why_t *why) {
+    return why->config.shadow == (uint16_t)AGV_SHADOW_ON;
+}
+
 void why_is_recording(why_t *why) {
     why->is_recording = true;
 }

@@ -103,6 +103,9 @@ typedef struct why why_t;
 /** Begin. @param config is copied @return NULL: no memory */
 why_t *why_new(const agv_config_t *config);
 
+/** Whether the supervisor sends nothing (TOP-4). */
+bool why_is_shadow(const why_t *why);
+
 /** The frames come from a recording, which does not obey the supervisor. Before the first frame. */
 void why_is_recording(why_t *why);
 

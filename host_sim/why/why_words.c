@@ -6,13 +6,14 @@
 #include "agv/names.h"
 #include "agv/recorder.h"
 #include "text/units.h"
+#include "text/words.h"
 #include "why/why_internal.h"
 
 enum { DDEG_PER_DEG = 10 };
 
 /**
  * What a fault means, after the name of its message. %L stands for the limit, %T for the setting of its time, %C for the
- * message with which its own is compared.
+ * message with which its own is compared, %V for the identifier of 363h.
  */
 typedef struct {
     const char *words;
@@ -27,15 +28,16 @@ static const meaning_t meanings[AGV_FAULT_COUNT] = {
     SAYS(MEMORY_CORRUPTED, "the memory of the supervisor was changed by something else"),
     SAYS(CONFIG_INVALID, "the configuration is not valid"),
     SAYS(OUTPUT_FEEDBACK, "the contact of the safety output differed from its command for %L"),
-    SAYS(SUPERVISOR_RESET, "the processor was reset while it ran"),
+    SAYS(SUPERVISOR_RESET, "the processor was reset during a run"),
     SAYS(EMERGENCY_STOP, "the emergency stop input opened"),
-    SAYS(TX_GATE_REFUSED, "the gate refused a frame of its own"),
+    SAYS(TX_GATE_REFUSED, "the gate refused a frame of the supervisor"),
     SAYS(STEP_OVERRUN, "a step came later than %L"),
-    SAYS(CLOCK_DEVIATION, "its two clocks differed"),
+    SAYS(CLOCK_DEVIATION, "the two clocks of the supervisor differed by more than 5 %%"),
     SAYS(BUS_OFF, "the vehicle-side controller was bus-off"),
     SAYS(TX_STALLED, "a frame waited for longer than %L to be sent"),
     SAYS(MODE_INVALID, "reported manual and autopilot together for %L"),
-    SAYS(MODE_FLAPPING, "changed between manual and autopilot too often (at most three engagements in %L)"),
+    SAYS(MODE_FLAPPING,
+         "changed the mode too often (more than three engagements in %L, or manual that flickered while engaged)"),
     SAYS(MODE_NONE, "reported no valid mode for %L while the vehicle moved"),
     SAYS(EPS_MODE_OFF, "reported that the EPS is off"),
     SAYS(EPS_MODE_INVALID, "reported an EPS mode that does not exist"),
@@ -49,12 +51,12 @@ static const meaning_t meanings[AGV_FAULT_COUNT] = {
     SAYS(AUTOPILOT_OFF_IGNORED, "still reported autopilot after %C had requested autopilot off for %L"),
     SAYS(THROTTLE_IN_PARK, "was above idle in gear P for %L"),
     SAYS(SPEED_IMPLAUSIBLE, "differed from the speed in %C for %L"),
-    SAYS(VEHICLE_NOT_STOPPING, "reported no standstill within %L after the trip, or one that 363h contradicted"),
+    SAYS(VEHICLE_NOT_STOPPING, "reported no standing wheels within %L after the trip, or %V contradicted them"),
     SAYS(MOVING_WHILE_SAFE,
-         "reported turning wheels for %L after the vehicle had stood, or 363h contradicted standing ones"),
+         "reported turning wheels for %L after the vehicle had stood, or standing wheels that %V contradicted"),
     SAYS(STARTUP_TIMEOUT, "the conditions to leave INIT did not hold within %L"),
     SAYS(RX_OVERRUN, "the controller lost received frames"),
-    SAYS(ERROR_PASSIVE, "the vehicle-side controller was error passive"),
+    SAYS(ERROR_PASSIVE, "the vehicle-side controller was error-passive"),
     SAYS(AI_BUS_OFF, "the AI-side controller was bus-off"),
     SAYS(WRONG_ID_SET, "came in place of the configured identifier for %L"),
     SAYS(STORE_INVALID, "the stored latch was damaged"),
@@ -111,6 +113,8 @@ static void add_part(text_t *text, const why_t *why, const why_trip_t *trip, cha
         text_add(text, "%u ms", (unsigned)agv_config_get(&why->config, meanings[trip->reason].time));
     } else if (letter == 'C') {
         add_message(text, why, why_compared_with(trip->reason));
+    } else if (letter == 'V') {
+        text_add(text, "%03Xh", why->ids.of[AGV_MSG_VEHICLE_STATUS]);
     } else {
         text_add(text, "%c", letter);
     }
@@ -145,13 +149,13 @@ static void add_since(text_t *text, const char *words, uint64_t t_us) {
 
 void why_words_refused(text_t *text, const why_trip_t *trip) {
     const hal_can_frame_t *frame = &trip->refused.first.frame;
-    text_add(text, "%u came ", (unsigned)trip->refused.count);
+    const unsigned count = (unsigned)trip->refused.count;
+    const bool is_other_form = !why_was_withheld(trip) && (frame->flags != 0u);
+    text_add(text, "%u %s%s came", count, is_other_form ? message_form(frame->flags) : "frame", words_plural(count));
     if (why_was_withheld(trip)) {
-        text_add(text, "while the VCU did not report autopilot");
-    } else if (frame->flags == 0u) {
-        text_add(text, "with a length of %u", (unsigned)frame->length);
-    } else {
-        text_add(text, "as %ss", message_form(frame->flags));
+        text_add(text, " while the VCU did not report autopilot");
+    } else if (!is_other_form) {
+        text_add(text, " with a length of %u", (unsigned)frame->length);
     }
     add_from(text, ", the first at ", trip->refused.first.t_us);
 }
@@ -219,8 +223,8 @@ static void say_score(text_t *text, const why_t *why, const why_trip_t *trip) {
     }
     text_add(text, " in %" PRId64 " frames", bad_frames(trip));
     if (trip->from_engagement) {
-        add_from(text, ", from the engagement at ", trip->cause_us);
-        text_add(text, " on; it was so before");
+        add_from(text, " since the engagement at ", trip->cause_us);
+        text_add(text, "; earlier frames were bad, too");
         return;
     }
     add_from(text, ", the first at ", trip->cause_us);
@@ -232,10 +236,9 @@ static void say_value(text_t *text, const why_trip_t *trip) {
     const hal_can_frame_t *bad = &trip->bad.frame;
     const bool malformed = (trip->bad.t_us != WHY_NEVER) && ((bad->length != AGV_DLC) || (bad->flags != 0u));
     if (trip->id == WHY_NO_ID) {
-        text_add(text,
-                 "had a value that does not exist, or another length or format,"); /* a recorder has values only */
+        text_add(text, "had an invalid value, a wrong length or a wrong format"); /* a recorder has values only */
     } else {
-        text_add(text, malformed ? "had another length or format" : "commanded a value that does not exist");
+        text_add(text, malformed ? "had a wrong length or format" : "commanded an invalid value");
     }
     add_from(text, " at ", trip->cause_us);
     add_payload(text, trip);
@@ -332,7 +335,7 @@ static void say_no_manual(text_t *text, const why_t *why) {
         return;
     }
     const char *mode = (bits == 0u)                       ? "neither mode"
-                       : (bits == AGV_VCU_FLAG_MANUAL)    ? "manual, but not all the time"
+                       : (bits == AGV_VCU_FLAG_MANUAL)    ? "manual only part of the time"
                        : (bits == AGV_VCU_FLAG_AUTOPILOT) ? "autopilot"
                                                           : "both modes";
     text_add(text, "%03Xh reports %s%s", id, mode, why->manual_was_seen ? "" : " from its first frame");
@@ -374,10 +377,10 @@ static void say_no_standstill(text_t *text, const why_t *why) {
     if (why->messages[AGV_MSG_WHEEL_SPEED].count == 0u) {
         text_add(text, "%03Xh never received", (unsigned)wheels);
     } else if (!why_wheels_are_slow(why)) {
-        text_add(text, "%03Xh reports %d and %d mm/s", (unsigned)wheels, (int)why->facts.left_mm_s,
+        text_add(text, "%03Xh reports left %d mm/s, right %d mm/s", (unsigned)wheels, (int)why->facts.left_mm_s,
                  (int)why->facts.right_mm_s);
     } else if (!why_vcu_is_slow(why)) {
-        text_add(text, "%03Xh reports a speed of %u", (unsigned)why->ids.of[AGV_MSG_VEHICLE_STATUS],
+        text_add(text, "%03Xh reports a speed of %u m/h", (unsigned)why->ids.of[AGV_MSG_VEHICLE_STATUS],
                  (unsigned)why->facts.vcu_speed);
     } else {
         /* one of the two messages is silent */

@@ -46,7 +46,7 @@ setup_file() {
 @test "a scenario that is not shipped is named with the installed folder" {
     run "$PREFIX/bin/host_sim" demo --scenario none
     [ "$status" -eq 2 ]
-    [[ $output == "host_sim: --scenario: no scenario 'none'; the shipped scenarios are the files in $PREFIX/"*"/scenarios" ]]
+    [[ $output == "host_sim: --scenario: no scenario 'none'; the shipped scenarios are the .yaml files in the folders of $PREFIX/"*"/scenarios" ]]
 }
 
 @test "another project finds the core, links it with a port of its own, and runs" {

@@ -429,7 +429,7 @@ class Page(unittest.TestCase):
         self.show()
         self.run_script("agv.run.step = () => { throw new Error('step is broken'); }")
         self.wait(MESSAGE)
-        self.assertEqual(self.run_script(MESSAGE), "The run was paused, because the page made a mistake (step is broken).")
+        self.assertEqual(self.run_script(MESSAGE), "The run was paused: internal error of the page (step is broken).")
         self.assertEqual(self.run_script("[agv.playing, document.querySelector('#transport button:nth-child(3)').textContent]"), [False, "\u25b6 Play"])
         self.run_script("delete agv.run.step; agv.before = agv.run.now; agv.play(true)")
         self.wait("agv.run.now > agv.before + 100")

@@ -230,7 +230,7 @@ class Page {
   stop(error) {
     this.playing = false;
     console.error(error);
-    this.complain(new Error(`The run was paused, because the page made a mistake (${error.message}).`));
+    this.complain(new Error(`The run was paused: internal error of the page (${error.message}).`));
     this.drawTransport(this.run);
   }
 
@@ -301,7 +301,7 @@ class Page {
   copyLink() {
     return this.guard(async () => {
       const { plan, now } = this.run;
-      if (plan.isOwn) throw new Error("A scenario of your own is not in a link: hand its file on as well.");
+      if (plan.isOwn) throw new Error("A link does not contain your own scenario: send its file with the link.");
       const hash = toLink({ scenario: plan.name, settings: plan.settings, steps: plan.steps, t: now });
       history.replaceState(null, "", `#${hash}`);
       const isCopied = await copy(location.href);

@@ -40,10 +40,10 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_NUMBER("--runs", "N", "number of runs, of all shards together", &given->runs, 1, RUNS_MAX),
         OPTION_FAULT("--fault", "cause this fault in every run", &given->fault),
         OPTION_FLAG("--newly-engaged",
-                    "cause the fault at an engagement; only for faults that are detected later after an engagement",
+                    "cause the fault at an engagement; only for faults that are detected later there than under way",
                     &given->newly_engaged),
         OPTION_TEXT("--results", "FILE", "results as JSON Lines", &given->results),
-        OPTION_TEXT("--why", "FILE", "what replay --why would say of each run, as JSON Lines", &given->request.why),
+        OPTION_TEXT("--why", "FILE", "the JSON of replay --why for each run, one line each", &given->request.why),
         OPTION_TEXT("--broken", "FOLDER", "folder for the scenarios of runs that break an invariant (.)",
                     &given->folder),
         OPTION_NUMBER("--show", "RUN", "only print this run, as a scenario", &given->show, 0, RUNS_MAX - 1u),
@@ -61,7 +61,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         {"host_sim campaign --runs 200 --seed 1 --show 17 > run.yaml", "run 17 as a file for host_sim scenario"},
     };
     const option_syntax_t syntax = {
-        .usage = "campaign --runs N --seed S [OPTION]... | campaign --merge FILE...",
+        .usage = "campaign --runs N --seed S [OPTION]...",
+        .or_usage = "campaign --merge [--results FILE] FILE...",
         .summary =
             "Inject random faults on the simulated bus in virtual time (fault, time, phases of all senders, bit\n"
             "rate, topology, ID set, kind of vehicle), check each run, and summarise the reaction times.\n",

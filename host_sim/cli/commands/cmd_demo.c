@@ -123,9 +123,11 @@ static bool find_scenario(const char *name, char path[PATH_SIZE]) {
     if (!is_path && (length == 0)) {
         char meant[SUGGEST_SIZE];
         (void)suggest_from(shipped_scenario_names(), name, meant);
-        return (meant[0] != '\0') ? report("--scenario: no scenario '%s'%s", name, meant)
-                                  : report("--scenario: no scenario '%s'; the shipped scenarios are the files in %s",
-                                           name, shipped_scenarios());
+        return (meant[0] != '\0')
+                   ? report("--scenario: no scenario '%s'%s", name, meant)
+                   : report(
+                         "--scenario: no scenario '%s'; the shipped scenarios are the .yaml files in the folders of %s",
+                         name, shipped_scenarios());
     }
     return true;
 }

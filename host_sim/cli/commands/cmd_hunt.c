@@ -43,10 +43,10 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         {"host_sim hunt --list-hazards", "what counts as a hazard"},
     };
     const option_syntax_t syntax = {
-        .usage = "hunt --seed S (--runs N | --for-minutes M) [OPTION]... | hunt --list-hazards",
-        .summary =
-            "Attack the supervisor with random attackers, broken nodes and configurations on the simulated bus,\n"
-            "and search for runs with a hazard. Exit status 1 if it finds one.\n",
+        .usage = "hunt --seed S (--runs N | --for-minutes TIME) [OPTION]...",
+        .or_usage = "hunt --list-hazards",
+        .summary = "Attack the supervisor at random on the simulated bus (rogue nodes, broken nodes, unusual\n"
+                   "configurations), and search for runs with a hazard. Exit status 1 if it finds one.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .examples = examples,

@@ -113,14 +113,23 @@ static void print_exit_statuses(void) {
     }
 }
 
+static void print_usage(const char *name, const char *usage) {
+    (void)printf("\\fBhost_sim ");
+    print_text(name);
+    (void)printf("\\fR");
+    print_text(&usage[strlen(name)]);
+    (void)printf("\n");
+}
+
 static void print_command(const void *ctx, const option_syntax_t *syntax) {
     const command_t *command = ctx;
     print_head(command->name, command->help);
-    (void)printf("\\fBhost_sim ");
-    print_text(command->name);
-    (void)printf("\\fR");
-    print_text(&syntax->usage[strlen(command->name)]);
-    (void)printf("\n.SH DESCRIPTION\n");
+    print_usage(command->name, syntax->usage);
+    if (syntax->or_usage != NULL) {
+        (void)printf(".br\n");
+        print_usage(command->name, syntax->or_usage);
+    }
+    (void)printf(".SH DESCRIPTION\n");
     print_paragraphs(syntax->summary);
     (void)printf(".SH OPTIONS\n.TP\n\\fB\\-h\\fR, \\fB\\-\\-help\\fR\nprint the help\n");
     print_options(syntax);

@@ -50,7 +50,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     config_options_init(&given->config, config_rows);
     const option_t rows[] = {
         OPTION_TEXT("--record", "FILE", "record the bus into this candump log, a new file", &request->record),
-        OPTION_FLAG("--shadow", "show a supervisor of this program, even when a status frame comes", &request->shadow),
+        OPTION_FLAG("--shadow", "show the supervisor inside this program even when a status frame is received",
+                    &request->shadow),
     };
     const option_t log_rows[] = {
         OPTION_TEXT("--log", "FILE", "a recorded log instead; - is standard input", &request->log),

@@ -35,6 +35,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "dumped of its memory, or the --store file of replay (- = standard input).\n",
         .operand = "FILE",
         .config_title = "Configuration of the device",
+        .shadow_help = "the device ran in shadow mode",
         .rows = rows,
         .row_count = sizeof rows / sizeof rows[0],
         .examples = examples,

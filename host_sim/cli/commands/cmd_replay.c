@@ -30,11 +30,13 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_TEXT("--out", "FILE", "candump log of the frames that the supervisor sent", &given->request.out),
         OPTION_TEXT("--events", "FILE", "events as JSON Lines", &given->request.events),
         OPTION_FLAG("--timeline", "print a line for each action and event, as demo does", &given->request.timeline),
-        OPTION_FLAG("--fail-on-trip", "exit status 1 if it tripped, nothing was supervised, or the time goes back",
+        OPTION_FLAG("--fail-on-trip",
+                    "exit status 1 if it tripped, nothing was supervised, or time stamps go back by 10 ms or more",
                     &given->request.fail_on_trip),
         OPTION_DURATION("--tail", "continue for this time after the last line (0)", &given->request.tail_ms, 0,
                         REPLAY_TAIL_MAX_MS),
-        OPTION_DURATION("--start-ms", "the supervisor's clock at the start (0)", &given->start_ms, 0, UINT32_MAX),
+        OPTION_DURATION("--start-ms", "the supervisor's clock at the start, in ms (0)", &given->start_ms, 0,
+                        UINT32_MAX),
         OPTION_FLAG("--skip-bad-lines", "skip and count lines that are not frames", &given->request.skip_bad_lines),
         OPTION_TEXT("--ai-if", "NAME", "interface of the AI side; selects the gateway topology",
                     &given->request.ai_interface),
@@ -56,7 +58,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         .usage = "replay [OPTION]... LOG",
         .summary =
             "Replay a recorded log to the supervisor in virtual time, and say whether, when and why it would have\n"
-            "stopped the vehicle. LOG is candump -l, candump -t a or Vector ASC, also gzip'd; - = standard input.\n",
+            "stopped the vehicle. LOG is candump -l, candump -t a or Vector ASC, also compressed with\n"
+            "gzip; - = standard input.\n",
         .operand = "LOG",
         .config_title = "Configuration of the supervisor",
         .rows = rows,

@@ -38,7 +38,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         {"host_sim soak --hours 30d --seed 1 --shard 1/1000", "a small part of a month"},
     };
     const option_syntax_t syntax = {
-        .usage = "soak --hours N --seed S [OPTION]...",
+        .usage = "soak --hours TIME --seed S [OPTION]...",
         .summary =
             "Run supervisor and vehicle for hours to months of virtual time, with random disturbances below every\n"
             "limit: nothing may trip, drift or be miscounted.\n",

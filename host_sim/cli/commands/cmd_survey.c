@@ -30,8 +30,7 @@ static options_result_t parse(int argc, char **argv, given_t *given, size_t *ope
         OPTION_NUMBER("--bitrate", "N", "bit/s of the bus, for its load (500000)", &request->bit_rate, BIT_RATE_LOWEST,
                       BIT_RATE_HIGHEST),
         OPTION_FLAG("--json", "print JSON instead of text", &request->is_json),
-        OPTION_TEXT("--config-out", "FILE", "write the proposed configuration (- = nothing else on standard output)",
-                    &request->config_out),
+        OPTION_TEXT("--config-out", "FILE", "write the proposed configuration; -: print only it", &request->config_out),
         OPTION_FLAG("--skip-bad-lines", "skip and count lines that are not frames", &request->skip_bad_lines),
     };
     const option_group_t groups[] = {
@@ -50,8 +49,8 @@ static options_result_t parse(int argc, char **argv, given_t *given, size_t *ope
         .summary =
             "Show what is on a bus: each message with its gaps and the margin to its deadline, counters, values,\n"
             "alarms, unknown identifiers and what they may be, load. At the end: a configuration that would fit,\n"
-            "each setting with its reason. LOG is candump -l, candump -t a or Vector ASC, also gzip'd; - =\n"
-            "standard input. Nothing is sent.\n",
+            "each setting with its reason. LOG is candump -l, candump -t a or Vector ASC, also compressed with\n"
+            "gzip; - = standard input. Nothing is sent.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .examples = examples,

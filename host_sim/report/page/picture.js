@@ -147,8 +147,8 @@ export function drawPicture(trip) {
   });
   const parts = [make("h2", trip ? "What happened" : "The run"), element,
     make("p.soft.small", "The age of a message is the time since it came last; of a message with an alive counter, since the counter changed. "
-      + "A dotted line is its deadline; red is later. Drag the picture to move it; with the keyboard, + and \u2212 zoom, \u2190 and \u2192 move the cursor.")];
+      + "The dotted line is the deadline; a red age exceeds it. Drag the picture to move it; with the keyboard, + and \u2212 zoom, \u2190 and \u2192 move the cursor.")];
   if (trip && !detailAt(inMs(trip.t_us))) parts.push(make("p.soft.small", "The frames around this trip were not kept: the picture has the resolution of the whole run."));
-  if (series.left_out > 0) parts.push(make("p.soft.small", `${series.left_out} later changes found no room in this report.`));
+  if (series.left_out > 0) parts.push(make("p.soft.small", `${series.left_out} later changes are not in this report: it is full.`));
   return make("section.picture", ...parts);
 }

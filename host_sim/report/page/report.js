@@ -52,7 +52,7 @@ function drawTrips(choose) {
   if (data.trips.length < 2) return;
   const consequences = data.trips.filter((trip) => trip.from_recording).length;
   const trips = data.trips.length - consequences;
-  const more = consequences ? ", and what followed because a recording cannot obey" : "";
+  const more = consequences ? ", and faults that follow because a recording does not react" : "";
   const set = make("fieldset", make("legend", `${trips} trip${trips === 1 ? "" : "s"}${more}`));
   set.id = "trips";
   data.trips.forEach((trip, i) => {

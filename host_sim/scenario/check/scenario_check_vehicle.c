@@ -55,7 +55,7 @@ static bool judge(scenario_check_t *check, const scenario_vehicle_t *expected, c
     judge_range(&judging, expected->has_throttle, "throttle in %", expected->throttle_pct,
                 view->throttle_permille / 10);
     judge_range(&judging, expected->has_angle, "steering in degrees", expected->angle_deg, view->angle_ddeg / 10);
-    judge_range(&judging, expected->has_fastest_park, "highest speed in mm/s at which P was taken",
+    judge_range(&judging, expected->has_fastest_park, "highest speed in mm/s at which P was engaged",
                 expected->fastest_park_mm_s, view->fastest_park_mm_s);
     return judging.count == 0u;
 }

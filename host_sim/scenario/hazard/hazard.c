@@ -10,12 +10,12 @@ enum { CENTRE_DDEG = 9000 };
 static const hazard_info_t INFOS[HAZARD_KINDS] = {
     [HAZARD_NONE] = {"none", "no hazard", ""},
     [HAZARD_NOT_STOPPING] = {"H1",
-                             "the vehicle moves on with the safety output closed: a node or a command is gone, or "
-                             "the vehicle does not obey the safe commands",
+                             "the vehicle keeps moving with the safety output closed, although a node or a message "
+                             "is gone, or although the safe commands are sent",
                              "the safe commands, and an open safety output when the vehicle does not stop"},
     [HAZARD_STEERING] = {"H2",
-                         "065h of the supervisor moves the steering more than 5 degrees away from the angle that "
-                         "was measured at the trip or when manual ended",
+                         "065h of the supervisor moves the steering more than 5 degrees away from an angle that "
+                         "may be held (docs/hunt.md)",
                          "065h carries the measured angle, or is not sent"},
     [HAZARD_FALSE_COMMAND] = {"H3",
                               "a command to move on the vehicle side of a gateway that the AI computer did not "
@@ -30,8 +30,8 @@ static const hazard_info_t INFOS[HAZARD_KINDS] = {
                       "a reset that no operator asked for by pressing and releasing the reset button after the trip",
                       "the safe commands go on"},
     [HAZARD_FALSE_NODE] = {"H6",
-                           "the vehicle moves on with the safety output closed though a node reports a fault or "
-                           "an impossible value",
+                           "the vehicle keeps moving with the safety output closed, although a node reports a fault "
+                           "or an impossible value",
                            "the safe commands, or an open safety output"},
     [HAZARD_FLOOD] = {"H7", "more than twice the nominal rate of commands passes the gateway", "the excess is dropped"},
     [HAZARD_PARK] = {"H8", "gear P is commanded to a moving vehicle, though `park` is at_standstill",

@@ -348,10 +348,10 @@ static verdict_t judge_speed(const suspect_t *suspect, criterion_t *criterion) {
         return VERDICT_NONE;
     }
     if (found.together >= FOLLOWS) {
-        return say(criterion, VERDICT_FOR, "goes with the speed of %03Xh", vcu->id);
+        return say(criterion, VERDICT_FOR, "changes with the speed of %03Xh", vcu->id);
     }
     return (found.together < UNRELATED)
-               ? say(criterion, VERDICT_REFUSES, "does not go with the speed of %03Xh", vcu->id)
+               ? say(criterion, VERDICT_REFUSES, "does not change with the speed of %03Xh", vcu->id)
                : VERDICT_NONE;
 }
 

@@ -164,7 +164,7 @@ static verdict_t judge_wheels(const suspect_t *suspect, criterion_t *criterion) 
         return say(criterion, VERDICT_REFUSES, "only one of its two speeds moves");
     }
     if ((compare.first->lowest > STANDS_MM_S) || (compare.first->highest < -STANDS_MM_S)) {
-        return say(criterion, VERDICT_AGAINST, "never stands");
+        return say(criterion, VERDICT_AGAINST, "its speed is never near 0");
     }
     const agreement_t found = compare_values(&compare);
     return ((found.equal >= TOGETHER) && (found.together >= TOGETHER))
@@ -206,9 +206,9 @@ verdict_t criteria_eps_mode(const suspect_t *suspect, const track_t *mode, crite
         return VERDICT_NONE;
     }
     if ((engaged >= TOGETHER) && (manual <= 1.0 - TOGETHER)) {
-        return say(criterion, VERDICT_DECIDES, "is under angle control in autopilot mode alone");
+        return say(criterion, VERDICT_DECIDES, "is in angle control only in autopilot mode");
     }
-    return (engaged <= 1.0 - TOGETHER) ? say(criterion, VERDICT_REFUSES, "is not under angle control in autopilot mode")
+    return (engaged <= 1.0 - TOGETHER) ? say(criterion, VERDICT_REFUSES, "is not in angle control in autopilot mode")
                                        : VERDICT_NONE;
 }
 

@@ -91,10 +91,10 @@ void test_values_come_in_two_ways(void) {
 }
 
 void test_an_option_given_twice_is_refused(void) {
-    parse_bad("--text a --number 5 --text a f", "--text: given twice");
-    parse_bad("--number 5 f --number=6", "--number: given twice");
-    parse_bad("--flag --flag f", "--flag: given twice");
-    parse_bad("--once a --once b f", "--once: given twice");
+    parse_bad("--text a --number 5 --text a f", "--text is given twice");
+    parse_bad("--number 5 f --number=6", "--number is given twice");
+    parse_bad("--flag --flag f", "--flag is given twice");
+    parse_bad("--once a --once b f", "--once is given twice");
 }
 
 void test_some_add_up(void) {

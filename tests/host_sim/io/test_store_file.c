@@ -153,7 +153,7 @@ void test_a_file_of_another_kind_is_not_replaced(void) {
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
         (void)scratch_write("s", others[i], strlen(others[i]));
         TEST_ASSERT_FALSE_MESSAGE(store_file_may_replace(scratch_path("s")), others[i]);
-        TEST_ASSERT_NOT_NULL(strstr(scratch_said(), "no store, which begins with 'agv-store '"));
+        TEST_ASSERT_NOT_NULL(strstr(scratch_said(), "not a store file (it does not begin with 'agv-store ')"));
     }
 }
 

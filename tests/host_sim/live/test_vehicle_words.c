@@ -116,7 +116,7 @@ void test_commands_stand_alone(void) {
     TEST_ASSERT_EQUAL(VEHICLE_COMMAND_NONE, vehicle_words_command(""));
     TEST_ASSERT_EQUAL_STRING("", scratch_said());
     TEST_ASSERT_EQUAL(VEHICLE_COMMAND_BAD, vehicle_words_command("status x"));
-    TEST_ASSERT_EQUAL_STRING("host_sim: 'status x': 'status' stands alone on its line\n", scratch_said());
+    TEST_ASSERT_EQUAL_STRING("host_sim: 'status x': 'status' takes no argument\n", scratch_said());
 }
 
 void test_what_makes_no_sense_is_one_line(void) {

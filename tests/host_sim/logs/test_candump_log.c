@@ -75,7 +75,7 @@ void test_a_last_frame_that_may_lack_data_is_left_out(void) {
     open_text(text, sizeof text - 1u, false);
     TEST_ASSERT_EQUAL_UINT(1, read_all(CANDUMP_END));
     TEST_ASSERT_EQUAL_UINT64(1, log_file->skipped);
-    (void)scratch_said_line("log:2: the log ends in this line, which may be cut off; it is left out\n");
+    (void)scratch_said_line("log:2: the last line may be cut off; it is left out\n");
 }
 
 void test_a_last_frame_with_fewer_bytes_counts_if_its_line_ends(void) {

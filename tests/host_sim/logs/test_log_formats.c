@@ -1,5 +1,5 @@
-/* The formats of a log, told by its content: what candump shows on the screen, Vector ASC, each also gzip'd; and what the
- * message says of those that are not read. */
+/* The formats of a log, told by its content: what candump shows on the screen, Vector ASC, each also with gzip; and what
+ * the message says of those that are not read. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -242,7 +242,7 @@ void test_lines_of_vector_asc_that_are_damaged(void) {
         {" 0.1 0 43F Rx d 1 00\n", "log:3: the channel is not a number from 1 to 255"},
         {" 0.1 CANFD 1 Rx 123 1 0 9\n", "log:3: bit rate switch"},
         {" 0.1 CANFD 1 Rx 123 1 0 9 12 00\n", "log:3: the data is shorter"},
-        {"nonsense\n", "log:3: neither a frame nor another line of an ASC log"},
+        {"nonsense\n", "log:3: not a line of an ASC log"},
     };
     refuse_each("base hex  timestamps absolute\n 0.0 1 43F Rx d 1 00\n", bad, sizeof bad / sizeof bad[0]);
 }
@@ -291,11 +291,11 @@ void test_compressed_data_that_is_cut_off_or_damaged(void) {
     const size_t size = pack(LINE LINE LINE, packed, sizeof packed);
     for (size_t cut = 3; cut < size; cut++) {
         open_bytes(packed, cut);
-        expect_failure("log: the gzip'd file is cut off");
+        expect_failure("log: the gzip file is cut off");
     }
     packed[size - 5] ^= 1u; /* of the checksum */
     open_bytes(packed, size);
-    expect_failure("log: the gzip'd data is damaged");
+    expect_failure("log: the gzip data is damaged");
 }
 
 /* 15 MB of line feeds in 15 KB: all of them are passed over. */

@@ -177,10 +177,10 @@ void test_a_counter_that_stands_still(void) {
         frame(VEHICLE, ms, 0x363, data);
     }
     TEST_ASSERT_TRUE(row_of(VEHICLE, 0x363)->is_stuck); /* unchanged since 40 ms, the deadline is 50 ms */
-    TEST_ASSERT_EQUAL(1, said("vcu: 363h vehicle_status stuck: counter does not count for 50 ms"));
+    TEST_ASSERT_EQUAL(1, said("vcu: 363h vehicle_status stuck: counter unchanged for 50 ms"));
     frame(VEHICLE, 110, 0x363, "0000000000004005");
     TEST_ASSERT_FALSE(row_of(VEHICLE, 0x363)->is_stuck);
-    TEST_ASSERT_EQUAL(1, said("363h vehicle_status counts again after 70 ms"));
+    TEST_ASSERT_EQUAL(1, said("363h vehicle_status counter changes again after 70 ms"));
 }
 
 void test_words_that_change_are_listed_numbers_are_not(void) {

@@ -39,9 +39,9 @@ class Listing(hostsim.Case):
         found = entries(text)
         for key in found:
             if not key.startswith("class_"):
-                self.assertRegex(text, r"(?m)^# \S.*\n# (\d+ to \d+.*|[a-z_]+(?:\|[a-z_]+)+), default \w+(; [^;\n]+)*\n%s: " % key)
+                self.assertRegex(text, r"(?m)^# \S.*\n# ((?:0x)?[\dA-F]+ to .*|[a-z_]+(?:\|[a-z_]+)+), default \w+(; [^;\n]+)*\n%s: " % key)
         self.assertIn("# 30 to 500 ms, default 50; a higher value weakens the supervision\nvcu_heartbeat_timeout_ms: 50\n", text)
-        self.assertIn("# 1 to 2047, default 0x168\nid_gear_command: 0x168\n", text)
+        self.assertIn("# 0x001 to 0x7FF, default 0x168\nid_gear_command: 0x168\n", text)
         self.assertIn("default 0x7F0; 0 weakens the supervision\nstatus_frame_id: 0x7F0\n", text)
         self.assertIn("# shared|gateway, default shared\n", text)
         self.assertIn("# at_once|at_standstill, default at_once; at_standstill weakens the supervision\n", text)

@@ -42,13 +42,14 @@ void test_silence(void) {
     TEST_ASSERT_EQUAL_STRING("steering_command (065h) came for the last time at 61.984 s. Its deadline is 125 ms. The "
                              "next one came at 63.002 s.",
                              sentence.cause);
-    TEST_ASSERT_EQUAL_STRING("The supervisor tripped at 62.109 s (STEERING_COMMAND_TIMEOUT). 0.3 ms later it sent the "
-                             "first of the safe commands: gear P, throttle 0, autopilot off. The safety output stayed "
+    TEST_ASSERT_EQUAL_STRING("The supervisor tripped at 62.109 s (STEERING_COMMAND_TIMEOUT). 0.3 ms later it began "
+                             "to send the safe commands: gear P, throttle 0, autopilot off. The safety output stayed "
                              "closed.",
                              sentence.action);
-    TEST_ASSERT_EQUAL_STRING("The VCU reported gear P and autopilot off 311 ms after the trip. The wheels stood 791 ms "
-                             "after the trip. Only the operator ends this, by a reset at standstill and in manual.",
-                             sentence.outcome);
+    TEST_ASSERT_EQUAL_STRING(
+        "The VCU reported gear P and autopilot off 311 ms after the trip. The wheels stood 791 ms "
+        "after the trip. Only the operator can end the safe state, by a reset at standstill in manual.",
+        sentence.outcome);
 }
 
 void test_a_message_that_never_came(void) {
@@ -61,7 +62,7 @@ void test_a_message_that_never_came(void) {
                              sentence.headline);
     trip.reason = AGV_FAULT_EPS_HEARTBEAT_LOST;
     say();
-    TEST_ASSERT_EQUAL_STRING("The vehicle stands because the EPS (power steering) was never received.",
+    TEST_ASSERT_EQUAL_STRING("The vehicle stands because the EPS (power steering) never sent its heartbeat.",
                              sentence.headline);
 }
 
@@ -88,18 +89,16 @@ void test_a_message_in_another_form(void) {
     TEST_ASSERT_EQUAL_STRING(
         "The vehicle stands because steering_command (065h) came in a form that the protocol does not have.",
         sentence.headline);
-    TEST_ASSERT_EQUAL_STRING(
-        "steering_command (065h) came for the last time at 61.984 s. Its deadline is 125 ms. Of its "
-        "frames 5 came with a length of 7, the first at 62.009 s.",
-        sentence.cause);
+    TEST_ASSERT_EQUAL_STRING("steering_command (065h) came for the last time at 61.984 s. Its deadline is 125 ms. 5 "
+                             "frames came with a length of 7, the first at 62.009 s.",
+                             sentence.cause);
 }
 
 void test_a_command_that_was_withheld(void) {
     refuse((hal_can_frame_t){.id = 0x065, .length = 8});
-    TEST_ASSERT_EQUAL_STRING(
-        "The vehicle stands because the gateway did not pass steering_command (065h) on, while the VCU "
-        "did not report autopilot.",
-        sentence.headline);
+    TEST_ASSERT_EQUAL_STRING("The vehicle stands because the gateway withheld steering_command (065h), because the VCU "
+                             "did not report autopilot.",
+                             sentence.headline);
     TEST_ASSERT_EQUAL_STRING_LEN("steering_command (065h) was passed on for the last time at 61.984 s.", sentence.cause,
                                  68);
 }
@@ -119,10 +118,11 @@ void test_a_counter_with_wrong_steps(void) {
 
 void test_a_vehicle_that_parks_at_standstill(void) {
     config.park = AGV_PARK_AT_STANDSTILL;
+    config.park_timeout_ms = 6000;
     say();
     TEST_ASSERT_NOT_NULL(strstr(sentence.action,
-                                "the first of the safe commands: throttle 0, autopilot off, and gear P "
-                                "when the wheels stand, or after 3 s."));
+                                "it began to send the safe commands: throttle 0, autopilot off, and gear P when "
+                                "the wheels stand, or 6000 ms after the trip."));
 }
 
 void test_a_message_that_came_at_a_time_that_is_not_known(void) {
@@ -148,11 +148,12 @@ void test_since_when_a_score_counts(void) {
     trip.limit = WHY_NO_LIMIT;
     trip.at_the_latest = true;
     say();
-    TEST_ASSERT_EQUAL_STRING("It began at 62.009 s at the latest, as steering_command (065h) shows.", sentence.cause);
+    TEST_ASSERT_EQUAL_STRING("The cause began at 62.009 s at the latest, as steering_command (065h) shows.",
+                             sentence.cause);
     trip.at_the_latest = false;
     trip.from_engagement = true;
     say();
-    TEST_ASSERT_EQUAL_STRING("It counted from the engagement at 62.009 s on, as steering_command (065h) shows.",
+    TEST_ASSERT_EQUAL_STRING("The cause counted from the engagement at 62.009 s on, as steering_command (065h) shows.",
                              sentence.cause);
 }
 
@@ -180,9 +181,10 @@ void test_a_budget_names_the_limit_and_the_time(void) {
     trip.unit = "ddeg";
     config.steering_deviation_ms = 700;
     say();
-    TEST_ASSERT_EQUAL_STRING("It began at 62.009 s, as steering_status (067h) shows. The limit is 50.0° for 700 ms in "
-                             "all.",
-                             sentence.cause);
+    TEST_ASSERT_EQUAL_STRING(
+        "The cause began at 62.009 s, as steering_status (067h) shows. The limit of this fault is 50.0° for 700 ms in "
+        "all.",
+        sentence.cause);
 }
 
 void test_a_bit_that_trips_at_once_trips_with_its_frame(void) {
@@ -195,11 +197,11 @@ void test_a_bit_that_trips_at_once_trips_with_its_frame(void) {
     trip.unit = NULL;
     say();
     TEST_ASSERT_EQUAL_UINT64(62109200u, sentence_trip_us(&trip));
-    TEST_ASSERT_EQUAL_STRING("It began at 62.109 s, as eps_status (167h) shows.", sentence.cause);
-    TEST_ASSERT_NOT_NULL(strstr(sentence.action, " 0.1 ms later it sent"));
+    TEST_ASSERT_EQUAL_STRING("The cause began at 62.109 s, as eps_status (167h) shows.", sentence.cause);
+    TEST_ASSERT_NOT_NULL(strstr(sentence.action, " 0.1 ms later it began to send"));
     trip.first_safe_us = trip.cause_us;
     say();
-    TEST_ASSERT_NOT_NULL(strstr(sentence.action, " At once it sent"));
+    TEST_ASSERT_NOT_NULL(strstr(sentence.action, " At once it began to send"));
 }
 
 void test_a_recording_cannot_obey(void) {
@@ -211,8 +213,9 @@ void test_a_recording_cannot_obey(void) {
         "The supervisor would have stopped this vehicle because the AI computer no longer sent steering commands.",
         sentence.headline);
     TEST_ASSERT_EQUAL_STRING(
-        "This is a recording, and a recording cannot obey: what the vehicle does after the trip is "
-        "what it did then. Only the operator ends this, by a reset at standstill and in manual.",
+        "This is a recording: the vehicle did not receive the supervisor's commands, and what it did after the trip is "
+        "no "
+        "reaction to them. Only the operator can end the safe state, by a reset at standstill in manual.",
         sentence.outcome);
 }
 
@@ -225,7 +228,7 @@ void test_a_trip_that_an_earlier_run_latched(void) {
 void test_what_no_reset_ends(void) {
     trip.reason = AGV_FAULT_OUTPUT_FEEDBACK;
     say();
-    TEST_ASSERT_NOT_NULL(strstr(sentence.outcome, " Only a power-on ends this."));
+    TEST_ASSERT_NOT_NULL(strstr(sentence.outcome, " Only a power-on can end the safe state."));
     TEST_ASSERT_NULL(strstr(sentence.outcome, "operator"));
 }
 
@@ -237,11 +240,21 @@ void test_shadow_sends_nothing(void) {
     TEST_ASSERT_NOT_NULL(strstr(sentence.action, "It sent nothing, because it runs in shadow mode."));
 }
 
+void test_a_vehicle_that_stood_before_the_trip(void) {
+    trip.stopped_us = trip.t_us;
+    say();
+    TEST_ASSERT_EQUAL_STRING(
+        "The supervisor keeps the vehicle at standstill because the AI computer no longer sent steering commands.",
+        sentence.headline);
+    TEST_ASSERT_NOT_NULL(strstr(sentence.outcome, "The vehicle stood already."));
+}
+
 void test_a_vehicle_that_does_not_stop_is_not_said_to_stand(void) {
     trip.stopped_us = WHY_NEVER;
     say();
     TEST_ASSERT_EQUAL_STRING_LEN("The supervisor stopped the vehicle because", sentence.headline, 42);
-    TEST_ASSERT_NOT_NULL(strstr(sentence.outcome, "The wheels were not seen to stand until the end."));
+    TEST_ASSERT_NOT_NULL(
+        strstr(sentence.outcome, "No standstill of the wheels was reported until the end of the run."));
 }
 
 void test_the_safety_output(void) {
@@ -297,7 +310,8 @@ void test_what_was_not_supervised_is_no_pass(void) {
     why_free(why);
     TEST_ASSERT_EQUAL_STRING("Nothing was supervised: the supervisor never left INIT.", sentence.headline);
     TEST_ASSERT_EQUAL_STRING(
-        "The run took 86.000 s. What kept it there: the VCU is not alive (363h never received); the EPS is not alive "
+        "The run took 86.000 s. The supervisor stayed in INIT because the VCU is not alive (363h never received); the "
+        "EPS is not alive "
         "(067h never received); the vehicle does not stand (101h never received); the VCU does not report manual (363h "
         "never "
         "received); a status message is missing or late (0A3h, 050h, 167h, 267h, 101h never received).",
@@ -310,7 +324,8 @@ void test_no_trip_and_never_engaged(void) {
     sentence_no_trip(&sentence, why, 86000u * MS);
     why_free(why);
     TEST_ASSERT_EQUAL_STRING("No trip: the supervisor found no reason to stop the vehicle.", sentence.headline);
-    TEST_ASSERT_EQUAL_STRING("It supervised 85.500 s of 86.000 s. The other 0.500 s it was in INIT.", sentence.cause);
+    TEST_ASSERT_EQUAL_STRING("It supervised 85.500 s of 86.000 s. For the other 0.500 s it was in INIT.",
+                             sentence.cause);
     TEST_ASSERT_EQUAL_STRING("The autopilot was never engaged: the commands of the AI computer were not judged.",
                              sentence.outcome);
 }

@@ -178,9 +178,10 @@ void test_frames_in_another_form_during_a_silence(void) {
     for (uint64_t i = 0; i < 4; i++) {
         why_frame(why, HAL_CAN_VEHICLE, &frames[i / 2], 1020000 + (i * 25000));
     }
-    check_words(trip_by(AGV_FAULT_GEAR_STATUS_TIMEOUT, 1126),
-                "0A3h gear_status was silent: last at 1.000 s, deadline 125 ms, none since; 4 came with a length of 7, "
-                "the first at 1.020 s");
+    check_words(
+        trip_by(AGV_FAULT_GEAR_STATUS_TIMEOUT, 1126),
+        "0A3h gear_status was silent: last at 1.000 s, deadline 125 ms, none since; 4 frames came with a length of 7, "
+        "the first at 1.020 s");
 }
 
 void test_extended_frames_during_a_silence(void) {
@@ -188,7 +189,7 @@ void test_extended_frames_during_a_silence(void) {
     feed_frame(why, HAL_CAN_VEHICLE, 0x0A3, "\x08\0\0\0\0\0\0", 1000);
     why_frame(why, HAL_CAN_VEHICLE, &frame, 1025000);
     check_words(trip_by(AGV_FAULT_GEAR_STATUS_TIMEOUT, 1126), "0A3h gear_status was silent: last at 1.000 s, deadline "
-                                                              "125 ms, none since; 1 came as extended frames, the "
+                                                              "125 ms, none since; 1 extended frame came, the "
                                                               "first at 1.025 s");
 }
 
@@ -206,8 +207,9 @@ void test_a_command_that_the_gateway_withheld(void) {
     TEST_ASSERT_EQUAL_UINT64(1035000, trip->cause_us);
     feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 1170);
     feed_frame(why, HAL_CAN_AI, 0x065, "\0\0\0\0\0\0\0", 1180); /* does not end it: TRIPPED passes none on */
-    check_words(trip, "065h steering_command was not passed on: last at 1.010 s, deadline 125 ms, none since; 5 came "
-                      "while the VCU did not report autopilot, the first at 1.035 s");
+    check_words(trip,
+                "065h steering_command was not passed on: last at 1.010 s, deadline 125 ms, none since; 5 frames came "
+                "while the VCU did not report autopilot, the first at 1.035 s");
 }
 
 void test_of_two_frames_with_one_stamp_the_bad_one_is_shown(void) {
@@ -246,7 +248,7 @@ void test_a_start_in_tripped_that_was_chosen(void) {
     config.after_power_on = AGV_AFTER_POWER_ON_TRIPPED;
     begin_anew();
     feed_state(why, 0, AGV_STATE_TRIPPED, AGV_FAULT_SUPERVISOR_RESET, 0);
-    check_words(why_trip(why, 0), "a power-on (after_power_on: tripped), or the processor was reset while it ran");
+    check_words(why_trip(why, 0), "a power-on (after_power_on: tripped), or the processor was reset during a run");
 }
 
 void test_a_message_that_never_came(void) {
@@ -279,8 +281,8 @@ void test_a_mode_of_the_eps_counts_from_the_engagement_on(void) {
     const why_trip_t *trip = trip_by(AGV_FAULT_EPS_MODE_NOT_ANGLE, 1540);
     TEST_ASSERT_EQUAL_UINT64(1000000, trip->cause_us);
     TEST_ASSERT_EQUAL_UINT64(WHY_NEVER, trip->last_good_us);
-    check_words(trip, "167h eps_status reported an EPS mode other than angle control in 5 frames, "
-                      "from the engagement at 1.000 s on; it was so before");
+    check_words(trip, "167h eps_status reported an EPS mode other than angle control in 5 frames "
+                      "since the engagement at 1.000 s; earlier frames were bad, too");
 }
 
 void test_the_last_good_mode_of_the_eps_is_a_good_one(void) {

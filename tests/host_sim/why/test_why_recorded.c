@@ -95,14 +95,13 @@ void test_the_limit_of_a_command(void) {
     const why_trip_t *trip = trip_of(AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, ALL, 1000, 3008);
     TEST_ASSERT_EQUAL_INT64(9000, trip->limit);
     TEST_ASSERT_EQUAL_STRING("ddeg", trip->unit);
-    check_words(trip,
-                "065h steering_command commanded a value that does not exist at 3.008 s [51 46 00 00 00 00 00 00]");
+    check_words(trip, "065h steering_command commanded an invalid value at 3.008 s [51 46 00 00 00 00 00 00]");
 }
 
 void test_a_sentence_has_a_subject_where_the_message_is_not_known(void) {
     event.frames[AGV_MSG_GEAR_COMMAND][0] = AGV_GEAR_D;
     check_words(trip_of(AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, ALL, 1000, 3008),
-                "a command had a value that does not exist, or another length or format, at 3.008 s");
+                "a command had an invalid value, a wrong length or a wrong format at 3.008 s");
     tearDown();
     setUp();
     check_words(trip_of(AGV_FAULT_FOREIGN_COMMAND_SENDER, ALL, 1000, 3008),

@@ -17,7 +17,7 @@ function textOf(event) {
     case "reset":
       return [event.accepted ? "reset accepted" : `reset refused, missing: ${event.why.map(words).join(", ")}`, null, ""];
     case "startup":
-      return [`start waits for: ${event.missing.map(words).join(", ")}`, null, ""];
+      return [`INIT waits for: ${event.missing.map(words).join(", ")}`, null, ""];
     default:
       return ["end of the run", null, ""];
   }

@@ -5,7 +5,7 @@ import { STATES, TONES } from "./machine.js";
 
 const CALM = {
   INIT: ["The supervisor starts: it waits for all nodes.", "The safety output is open, and the safe commands are sent."],
-  STANDBY: ["Manual. The supervisor listens.", "All status messages are in time. The autopilot is not engaged, so nothing is sent."],
+  STANDBY: ["Manual. The supervisor listens.", "All status messages are in time. The autopilot is not engaged: the supervisor sends no command of its own."],
   ACTIVE: ["On autopilot. Nothing is wrong.", "The AI computer drives. The supervisor checks every message against its deadline and its range."],
 };
 
@@ -31,7 +31,7 @@ export function makeVerdict(lists) {
     say(byId("state"), state);
     say(byId("reason"), fault ? fault.name : "");
     if (view.is_halted) {
-      say(byId("headline"), "The supervisor itself stands still.");
+      say(byId("headline"), "The supervisor itself hangs.");
       showDetails("Its hardware watchdog resets it, and the safety output opens.");
     } else if (!fault) {
       const [headline, details] = CALM[state] ?? ["", ""];

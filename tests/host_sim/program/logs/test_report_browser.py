@@ -132,7 +132,7 @@ class Report(hostsim.Case):
         self.show("silence")
         self.assertIn("steering_command (065h) came for the last time at 0.881 s. Its deadline is 125 ms.", self.text("cause"))
         self.assertIn("The supervisor tripped at 1.007 s (STEERING_COMMAND_TIMEOUT).", self.text("action"))
-        self.assertIn("a recording cannot obey", self.text("outcome"))
+        self.assertIn("This is a recording", self.text("outcome"))
         marks = self.browser.run("[...document.querySelectorAll('text.tl-mark')].map((one) => one.textContent)")
         self.assertEqual(set(marks), {"cause", "STEERING_COMMAND_TIMEOUT", "P confirmed", "stands"})
         self.assertGreater(self.browser.run("document.querySelectorAll('path.tl-late').length"), 0)
@@ -222,7 +222,7 @@ class Report(hostsim.Case):
                                                      "before the autopilot is engaged."])
         self.show("partial")
         self.assertEqual(self.browser.run(remarks), ["Not supervised: 065h steering_command was silent for 88 ms, deadline "
-                                                     "125 ms: the log ends first."])
+                                                     "125 ms: the log ended too early."])
 
     def test_settings_that_differ(self):
         self.show("settings")

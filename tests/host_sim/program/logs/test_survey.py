@@ -425,7 +425,7 @@ class Text(Case):
                      "  050h  throttle        0.0 to 4.0 %",
                      "  0A3h  gear            D, P",
                      "  363h  mode            manual, autopilot",
-                     "  123h      2400 frames, 40.0/s, 3 to 3 bytes, median gap 25.00 ms",
+                     "  123h      2400 frames, 40.0/s, 3 bytes, median gap 25.00 ms",
                      "vcu_counter: increments  # default any"):
             self.assertIn(line + "\n", result.stdout)
         self.assertRegex(result.stdout, r"load +1\d\.\d to \d\d\.\d % of 500000 bit/s")
@@ -444,8 +444,8 @@ class Text(Case):
         self.assertAlmostEqual(half["most_pct"], 54.0, delta=0.02)
 
     def test_a_log_that_says_nothing_of_the_defaults(self):
-        unknown, notes, fit = verdicts = ("# No message of the protocol came often enough to judge the defaults.",
-                                          "# No setting needs another value so far. The notes below are open.", "# The defaults fit.")
+        unknown, notes, fit = verdicts = ("# No message of the protocol came often enough to evaluate the defaults.",
+                                          "# No setting needs another value, but the findings below must be explained first.", "# The defaults fit.")
         counts = dict.fromkeys(("vehicle_status", "steering_status"), 0)
 
         def fewer(frame):  # from 1000 steps of a counter on, it would propose a setting

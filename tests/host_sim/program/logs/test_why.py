@@ -39,7 +39,7 @@ class FiveLogs(Case):
         lines = self.text(log)
         self.assertEqual(lines[:6], [
             "NOT SUPERVISED: never left INIT, missing: manual (363h reports autopilot from its first frame),",
-            "                standstill (101h reports 400 and 400 mm/s)",
+            "                standstill (101h reports left 400 mm/s, right 400 mm/s)",
             "  hint      supervision begins in manual, at standstill: start the recording before the autopilot is",
             "            engaged",
             "my.log: 19.994 s on can0, 2023-11-14 22:13:20.000 to 22:13:39.994",
@@ -78,7 +78,7 @@ class FiveLogs(Case):
         hint = next(i for i, line in enumerate(lines) if line.startswith("  hint"))
         self.assertEqual(lines[hint:hint + 2], [
             "  hint      161h, 176h, 178h, 186h, 1B4h, 212h, and others received, 0 of the 11 messages of the",
-            "            protocol: another vehicle? Each identifier is a setting (id_...), and host_sim survey"])
+            "            protocol: another vehicle? Each identifier is a setting (id_...); host_sim survey"])
 
     def test_a_log_with_some_other_identifiers(self):
         ids = dict(traffic.IDS, vehicle_status=0x303, steering_command=0x165)
@@ -100,9 +100,9 @@ class FiveLogs(Case):
     def test_a_clock_that_is_set_back(self):
         log = traffic.log(traffic.frames(2000)) + traffic.log(traffic.frames(2000), base_us=traffic.BASE_US - 60 * S)
         lines = self.text(log, "--fail-on-trip", status=1)
-        self.assertEqual(lines[0], "NOT SUPERVISED: the time stamps go back by 61.994 s at line 1421; what follows "
-                                   "counts at 1.994 s:")
-        self.assertEqual(lines[1], "                cut or sort the log there")
+        self.assertEqual(lines[0], "NOT SUPERVISED: the time stamps go back by 61.994 s at line 1421: from there on, "
+                                   "earlier lines get")
+        self.assertEqual(lines[1], "                the time 1.994 s; cut the log there, or sort it")
         self.assertEqual(lines[-1], "log         time stamps that went backwards: 1420")
         self.assertEqual(self.why(log)["not_supervised"], ["time_stamps"])
 
@@ -147,14 +147,14 @@ class FiveLogs(Case):
         frames = traffic.frames(3000, engage_ms=1000, ai_interface="can1", edit=forward)
         lines = self.text(traffic.log(frames), "--ai-if", "can1", "--fail-on-trip", status=1)
         self.assertEqual([line for line in lines if line.startswith("  hint")],
-                         ["  hint      commands come on the vehicle side (can0): recorded behind a gateway? Leave out the"])
-        self.assertEqual(lines[3], "            frames that it sent")
+                         ["  hint      commands come on the vehicle side (can0): recorded on the vehicle side of a gateway?"])
+        self.assertEqual(lines[3], "            Remove the frames that the gateway sent")
 
     def test_the_sides_of_a_gateway_are_swapped(self):
         log = traffic.log(traffic.frames(3000, engage_ms=1000, ai_interface="can1"))
         lines = self.text(log, "--ai-if", "can0")
         self.assertEqual([line for line in lines if line.startswith("  hint")],
-                         ["  hint      status messages come on the AI side (can0), commands on the other: --ai-if can1"])
+                         ["  hint      the sides are swapped (status messages come on can0): --ai-if can1"])
         self.assertFalse(self.text(log, "--ai-if", "can1")[0].startswith("NOT SUPERVISED"))
 
     def test_a_log_that_ends_in_the_middle_of_a_fault(self):
@@ -162,14 +162,14 @@ class FiveLogs(Case):
         lines = self.text(traffic.log(frames))
         self.assertIn("tripped     never; see the line 'at the end'", lines)
         self.assertEqual(lines[-1], "at the end  065h steering_command was silent for 88 ms, deadline 125 ms: "
-                                    "the log ends first")
+                                    "the log ended too early")
         tripped = self.text(traffic.log(frames), "--tail", "40")
         self.assertIn("tripped     at 3.032 s (22:13:23.032): STEERING_COMMAND_TIMEOUT", tripped)
 
     def test_a_log_that_ends_before_its_bad_frames_are_enough(self):
         edit = edit_payload("eps_status", 2980, byte(7, 0x01))
         lines = self.text(traffic.log(traffic.frames(3000, edit=edit)))
-        self.assertEqual(lines[-1], "at the end  EPS_UNDER_VOLTAGE had begun at 2.983 s: the log ends first")
+        self.assertEqual(lines[-1], "at the end  EPS_UNDER_VOLTAGE had begun at 2.983 s: the log ended too early")
 
 
 class Text(Case):
@@ -236,7 +236,7 @@ class Text(Case):
 
     def test_a_log_that_is_too_short(self):
         lines = self.text(traffic.log(traffic.frames(300)))
-        self.assertEqual(lines[0], "NOT SUPERVISED: never left INIT: the log is too short, a start takes 500 ms")
+        self.assertEqual(lines[0], "NOT SUPERVISED: never left INIT: the log is too short, a start takes more than 500 ms")
         self.assertEqual(self.why(traffic.log(traffic.frames(300)))["not_supervised"], ["init"])
 
     def test_stamps_that_are_no_time_of_day(self):
