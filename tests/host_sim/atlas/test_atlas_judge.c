@@ -23,21 +23,27 @@ static void expect(atlas_weakness_t weakness) {
     TEST_ASSERT_EQUAL(weakness, atlas_judge(&of, &pair, &SECOND, &FIRST));
 }
 
-void test_as_the_worse_half_is_sound(void) {
-    expect(ATLAS_SOUND);
-}
-
-void test_what_the_wire_may_add_is_sound(void) {
-    pair.safe_us = 330000;
-    pair.stop_us = 3200000;
-    expect(ATLAS_SOUND);
-}
-
-void test_a_later_frame(void) {
-    pair.safe_us = 330001;
-    expect(ATLAS_LATE_FRAME);
-    pair.safe_us = ATLAS_NEVER;
-    expect(ATLAS_LATE_FRAME);
+void test_each_way_to_be_weaker(void) {
+    static const struct {
+        int32_t safe_us;
+        int32_t open_us;
+        int32_t stop_us;
+        bool ready;
+        atlas_weakness_t weakness;
+    } rows[] = {
+        {300000, 800000, 3000000, true, ATLAS_SOUND},      /* as the worse half */
+        {330000, 800000, 3200000, true, ATLAS_SOUND},      /* what the wire may add */
+        {300000, ATLAS_NEVER, 3000000, true, ATLAS_SOUND}, /* as it stays closed in a half */
+        {330001, 800000, 3000000, true, ATLAS_LATE_FRAME}, {ATLAS_NEVER, 800000, 3000000, true, ATLAS_LATE_FRAME},
+        {300000, 800000, 3200001, true, ATLAS_LATE_STOP},  {300000, 800000, 3000000, false, ATLAS_NOT_READY},
+    };
+    for (size_t r = 0u; r < sizeof rows / sizeof rows[0]; r++) {
+        pair.safe_us = rows[r].safe_us;
+        pair.open_us = rows[r].open_us;
+        pair.stop_us = rows[r].stop_us;
+        pair.ready = rows[r].ready;
+        expect(rows[r].weakness);
+    }
 }
 
 void test_a_supervisor_that_is_silent_twice_may_take_400_ms_more(void) {
@@ -48,19 +54,9 @@ void test_a_supervisor_that_is_silent_twice_may_take_400_ms_more(void) {
     TEST_ASSERT_EQUAL(ATLAS_LATE_FRAME, atlas_judge(&of, &pair, &FIRST, &SECOND));
 }
 
-void test_the_output_may_stay_closed_if_it_does_in_a_half(void) {
-    pair.open_us = ATLAS_NEVER;
-    expect(ATLAS_SOUND);
-}
-
 void test_a_later_output_than_in_both_halves(void) {
     pair.open_us = ATLAS_NEVER;
     TEST_ASSERT_EQUAL(ATLAS_LATE_OUTPUT, atlas_judge(&of, &pair, &SECOND, &SECOND));
-}
-
-void test_a_later_stop(void) {
-    pair.stop_us = 3200001;
-    expect(ATLAS_LATE_STOP);
 }
 
 void test_a_pair_that_drives_on(void) {
@@ -90,11 +86,6 @@ void test_a_hazard_that_neither_half_has(void) {
     expect(ATLAS_HAZARD);
     half.hazard = HAZARD_NOT_STOPPING;
     TEST_ASSERT_EQUAL(ATLAS_SOUND, atlas_judge(&of, &pair, &half, &SECOND));
-}
-
-void test_a_case_that_did_not_begin_as_planned(void) {
-    pair.ready = false;
-    expect(ATLAS_NOT_READY);
 }
 
 void test_known_reasons(void) {

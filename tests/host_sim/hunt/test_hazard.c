@@ -216,6 +216,7 @@ static const stub_t FORGETS = {.gateway = true, .passes = 1u, .only_engaged = tr
 static const stub_t RESETS = {.safe_ms = TRIP_MS, .safe_end_ms = 6000};
 static const stub_t RESETS_BY_PIN = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .setting = "reset_input: pin\n"};
 static const stub_t RESETS_BY_BOTH = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .setting = "reset_input: both\n"};
+static const stub_t RESETS_LATER = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .setting = "confirm_timeout_ms: 1000\n"};
 static const stub_t TRIPS_AGAIN = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .again_ms = 6300};
 static const stub_t OPENS_LATE = {
     .gateway = true, .passes = 1u, .open_ms = TRIP_MS + 450, .setting = "tx_stalled_ms: 500\n"};
@@ -243,6 +244,9 @@ static const stub_t PARKS = {.safe_ms = TRIP_MS, .parks_ms = TRIP_MS + 50, .sett
 #define NOT_RELEASED "no button that may reset was released"
 
 #define WHEELS_SILENT "  - {at_ms: 3400, vcu: mute, message: wheel_speed}\n"
+#define WHEELS_0                                                                                                       \
+    "  - {at_ms: 2500, vcu: set, field: left_speed, value: 00000000h}\n"                                               \
+    "  - {at_ms: 2500, vcu: set, field: right_speed, value: 00000000h}\n"
 #define ROGUE_THROTTLE "  - {at_ms: 3000, bus: send, message: throttle_command, bytes: \"40\"}\n"
 #define MANUAL_SOON                                                                                                    \
     "  - {at_ms: 2850, ai: drive, gear: D, throttle_pct: 60, steer_deg: 80}\n"                                         \
@@ -255,6 +259,12 @@ static const stub_t PARKS = {.safe_ms = TRIP_MS, .parks_ms = TRIP_MS + 50, .sett
 #define NOT_IN_PARK_LATER "  - {at_ms: 6200, vcu: set, field: gear, value: 01h, frames: 25}\n"
 #define PRESS_1 "  - {at_ms: 4500, operator: press, button: 1}\n  - {at_ms: 5900, operator: release, button: 1}\n"
 #define PRESS_PIN "  - {at_ms: 4500, board: press}\n  - {at_ms: 5900, board: release}\n"
+#define PRESS_LOST "  - {at_ms: 2000, operator: press, button: 1}\n  - {at_ms: 2900, operator: lose_remote_signal}\n"
+#define PRESS_REGAINED                                                                                                 \
+    "  - {at_ms: 4500, operator: regain_remote_signal}\n  - {at_ms: 5900, operator: release, button: 1}\n"
+#define PRESS_LATE                                                                                                     \
+    "  - {at_ms: 2500, vcu: delay, message: vehicle_status, by_ms: 700}\n"                                             \
+    "  - {at_ms: 2700, operator: press, button: 1}\n"
 #define TX_DEAD "  - {at_ms: 3000, supervisor: stall_tx}\n"
 #define FALSE_PARK "  - {at_ms: 3000, vcu: set, field: gear, value: 08h}\n"
 #define FLOOD                                                                                                          \
@@ -283,6 +293,15 @@ static const struct {
     {HAZARD_NONE, NULL, NULL, &MUTE, ""},
     {HAZARD_NONE, NULL, NULL, &PASSING, ""},
     {HAZARD_NOT_STOPPING, NOT_OBEYED, &ROLLS, &ROLLS_AND_OPENS, ""},
+    /* 101h reads 0 for a vehicle that rolls at 3 m/s: 363h, with the true speed, contradicts it after 1 s */
+    {HAZARD_NOT_STOPPING, NOT_OBEYED, &ROLLS, &ROLLS_AND_OPENS, WHEELS_0},
+    {HAZARD_NONE, NULL, NULL,
+     &(const stub_t){.rolls = true, .safe_ms = TRIP_MS, .setting = "standstill_vcu_counts: 65535\n"}, WHEELS_0},
+    /* 0 of both: nobody can know that it moves; 0.80 m/s does not contradict, 0.89 m/s does */
+    {HAZARD_NONE, NULL, NULL, &ROLLS, WHEELS_0 "  - {at_ms: 2500, vcu: set, field: speed, value: 0000h}\n"},
+    {HAZARD_NONE, NULL, NULL, &ROLLS, WHEELS_0 "  - {at_ms: 2500, vcu: set, field: speed, value: 0B40h}\n"},
+    {HAZARD_NOT_STOPPING, NOT_OBEYED, &ROLLS, NULL,
+     WHEELS_0 "  - {at_ms: 2500, vcu: set, field: speed, value: 0C80h}\n"},
     /* who stood for half a second, and is silent, may roll unseen */
     {HAZARD_NOT_STOPPING, NOT_OBEYED, &ROLLS, NULL, WHEELS_SILENT},
     {HAZARD_NONE, NULL, NULL, &ROLLS,
@@ -373,6 +392,13 @@ static const struct {
     {HAZARD_NONE, NULL, NULL, &RESETS, PRESS_1},
     {HAZARD_NONE, NULL, NULL, &RESETS_BY_BOTH, PRESS_PIN},
     {HAZARD_NOT_STOPPING, "the EPS is silent", &MUTE, &GOOD, "  - {at_ms: 3000, eps: freeze_counter}\n"},
+    /* what 363h reports of the button counts too: nobody can know better */
+    {HAZARD_RESET, NOT_PRESSED, &RESETS_LATER, NULL, PRESS_LOST PRESS_REGAINED},
+    {HAZARD_NONE, NULL, NULL, &RESETS_LATER,
+     PRESS_LOST "  - {at_ms: 2900, vcu: set, field: alarms, value: 00h}\n" PRESS_REGAINED},
+    {HAZARD_NONE, NULL, NULL, &RESETS_LATER, PRESS_LATE "  - {at_ms: 4000, operator: release, button: 1}\n"},
+    {HAZARD_RESET, NOT_PRESSED, &RESETS_LATER, NULL, /* shorter than reset_hold_ms */
+     PRESS_LATE "  - {at_ms: 3200, operator: release, button: 1}\n"},
     /* a node that reports what cannot be */
     {HAZARD_FALSE_NODE, "the EPS is not in angle control", &MUTE, &GOOD,
      "  - {at_ms: 3000, eps: set, field: mode, value: FFh}\n"},
@@ -505,22 +531,6 @@ void test_whoever_does_nothing_is_a_hazard_and_whoever_reacts_is_none(void) {
     }
 }
 
-/** 101h reads 0 for a vehicle that rolls at 3 m/s: 363h, which reports the true speed, contradicts it after 1 s. */
-void test_h1_wheels_that_read_0_are_no_excuse_when_the_vcu_contradicts_them(void) {
-    static const char wheels[] = "  - {at_ms: 2500, vcu: set, field: left_speed, value: 00000000h}\n"
-                                 "  - {at_ms: 2500, vcu: set, field: right_speed, value: 00000000h}\n%s";
-    const char *const both = "  - {at_ms: 2500, vcu: set, field: speed, value: 0000h}\n";
-    const stub_t alone = {.rolls = true, .safe_ms = TRIP_MS, .setting = "standstill_vcu_counts: 65535\n"};
-
-    expect_hazard(HAZARD_NOT_STOPPING, NOT_OBEYED, &ROLLS, with(wheels, ""));
-    expect_none(&ROLLS_AND_OPENS, with(wheels, ""));
-    expect_none(&alone, with(wheels, ""));
-    expect_none(&ROLLS, with(wheels, both)); /* nobody can know that it moves */
-    expect_none(&ROLLS, with(wheels, "  - {at_ms: 2500, vcu: set, field: speed, value: 0B40h}\n")); /* 0.80 m/s */
-    expect_hazard(HAZARD_NOT_STOPPING, NOT_OBEYED, &ROLLS,
-                  with(wheels, "  - {at_ms: 2500, vcu: set, field: speed, value: 0C80h}\n")); /* 0.89 m/s */
-}
-
 /** The EPS has a fault, or another mode, while the AI computer steers on: then the angle of the trip is out of date. */
 void test_h2_an_eps_that_takes_no_angle_drops_the_angle_of_the_trip(void) {
     static const struct {
@@ -618,24 +628,6 @@ void test_h2_a_right_angle_may_be_sent_again_within_2_s(void) {
 
     expect_none(&holds, with("%s  - {at_ms: 8400, supervisor: free_queue}\n", head));
     expect_another_angle(true, &holds, with("%s  - {at_ms: 9000, supervisor: free_queue}\n", head));
-}
-
-/** What 363h reports of the button counts too: nobody can know better. */
-void test_h5_a_press_that_is_reported_late_or_wrongly(void) {
-    const stub_t resets = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .setting = "confirm_timeout_ms: 1000\n"};
-    static const char lost[] = "  - {at_ms: 2000, operator: press, button: 1}\n"
-                               "  - {at_ms: 2900, operator: lose_remote_signal}\n"
-                               "%s"
-                               "  - {at_ms: 4500, operator: regain_remote_signal}\n"
-                               "  - {at_ms: 5900, operator: release, button: 1}\n";
-    static const char late[] = "  - {at_ms: 2500, vcu: delay, message: vehicle_status, by_ms: 700}\n"
-                               "  - {at_ms: 2700, operator: press, button: 1}\n"
-                               "  - {at_ms: %s, operator: release, button: 1}\n";
-
-    expect_hazard(HAZARD_RESET, NOT_PRESSED, &resets, with(lost, ""));
-    expect_none(&resets, with(lost, "  - {at_ms: 2900, vcu: set, field: alarms, value: 00h}\n"));
-    expect_none(&resets, with(late, "4000"));
-    expect_hazard(HAZARD_RESET, NOT_PRESSED, &resets, with(late, "3200")); /* shorter than reset_hold_ms */
 }
 
 /** A gateway that is in bus-off there hears no invalid command, and passes none. */

@@ -31,12 +31,6 @@ static void receive(uint32_t id, uint64_t t_us, const uint8_t bytes[8]) {
     series_frame(series, HAL_CAN_VEHICLE, &frame, t_us);
 }
 
-static void send(uint32_t id, uint64_t t_us, const uint8_t bytes[8]) {
-    hal_can_frame_t frame = {.id = id, .length = 8u};
-    memcpy(frame.data, bytes, sizeof frame.data);
-    series_sent(series, HAL_CAN_VEHICLE, &frame, t_us);
-}
-
 static void wheels(uint64_t t_us, uint8_t mm_s) {
     const uint8_t bytes[8] = {mm_s, 0, 0, 0, mm_s, 0, 0, 0};
     receive(0x101, t_us, bytes);
@@ -122,9 +116,9 @@ void test_a_lane_has_its_changes_and_when_it_was_lost(void) {
 
 void test_commands_of_the_supervisor_are_a_lane_of_their_own(void) {
     const uint8_t drive[8] = {1};
-    const uint8_t park[8] = {8};
+    const hal_can_frame_t park = {.id = 0x168, .length = 8u, .data = {8}};
     receive(0x168, 0, drive);
-    send(0x168, 5 * MS, park);
+    series_sent(series, HAL_CAN_VEHICLE, &park, 5 * MS);
     end(10 * MS);
     is("lanes/gear_command/v", "[\"D\"]");
     is("lanes/gear_sent/v", "[\"P\"]");
