@@ -150,6 +150,11 @@ def is_disabled(node):
     return node.status not in ("okay", "ok")
 
 
+def require_enabled(name, node, more=""):
+    if is_disabled(node):
+        raise Refused(f'devicetree: {name}: {label(node)} is disabled: write {label(node)} {{ status = "okay"; }};{more}')
+
+
 def check_node(build):
     nodes = build.devicetree.compat2okay.get(NODE, [])
     if not nodes:
@@ -166,9 +171,7 @@ def check_controller(build, name):
     controller = build.node().props[name].val
     if "sample-point" not in controller._binding.prop2specs:  # of can-controller.yaml; edtlib has no public question for it
         raise Refused(f"devicetree: {name} = <{label(controller)}> is no CAN controller")
-    if is_disabled(controller):
-        raise Refused(f"devicetree: {name} = <{label(controller)}> is disabled: write {label(controller)} {{ status = \"okay\"; }}; "
-                      "with its pins")
+    require_enabled(name, controller, " with its pins")
     if build.has("AGV_RELEASE") and controller.matching_compat in NOT_A_BUS:
         raise Refused(f"release: {name} = <{label(controller)}> is {controller.matching_compat}, which reaches no bus: name a controller "
                       "of the chip")
@@ -200,13 +203,10 @@ def pins_of(build):
 def check_pins(build):
     led = build.node().props["alarm-led"].val
     for node in (led, led.parent):
-        if is_disabled(node):
-            raise Refused(f"devicetree: alarm-led = <{label(led)}>: {label(node)} is disabled: write {label(node)} {{ status = \"okay\"; }};")
+        require_enabled("alarm-led", node)
     seen = {}
     for name, entry in pins_of(build):
-        if is_disabled(entry.controller):
-            raise Refused(f"devicetree: {name}: {label(entry.controller)} is disabled: write {label(entry.controller)} "
-                          "{ status = \"okay\"; };")
+        require_enabled(name, entry.controller)
         pin = (entry.controller.path, entry.data.get("pin"))
         if pin in seen:
             raise Refused(f"devicetree: {seen[pin]} and {name} are the same pin, {pin_text(entry)}")
@@ -217,8 +217,7 @@ def check_second_clock(build):
     clock = build.node().props.get("second-clock")
     if clock is None:
         return
-    if is_disabled(clock.val):
-        raise Refused(f'devicetree: second-clock = <{label(clock.val)}> is disabled: write {label(clock.val)} {{ status = "okay"; }};')
+    require_enabled("second-clock", clock.val)
     kind = pathlib.Path(clock.val.binding_path or "/").parent.name  # edtlib has no question for a driver's interface
     if kind not in ("counter", "rtc", "timer") and not build.has("ZTEST"):
         raise Refused(f"devicetree: second-clock = <{label(clock.val)}> is no counter")
@@ -269,8 +268,7 @@ def check_watchdog(build):
     if watchdog is None:
         raise Refused("devicetree: no hardware watchdog: write aliases { watchdog0 = &your_watchdog; }; or set "
                       "CONFIG_AGV_ACCEPT_NO_WATCHDOG=y (not for a release): then the supervisor starts with SELF_TEST_FAILED")
-    if is_disabled(watchdog):
-        raise Refused(f"devicetree: watchdog0 = <{label(watchdog)}> is disabled: write {label(watchdog)} {{ status = \"okay\"; }};")
+    require_enabled("watchdog0", watchdog)
 
 
 def longest_window_ms(watchdog):
@@ -296,8 +294,7 @@ def check_window(build):
     watchdog = build.alias("window-watchdog")
     if watchdog is None:
         return
-    if is_disabled(watchdog):
-        raise Refused(f"devicetree: window-watchdog = <{label(watchdog)}> is disabled: write {label(watchdog)} {{ status = \"okay\"; }};")
+    require_enabled("window-watchdog", watchdog)
     if watchdog.matching_compat not in WINDOWS and not build.has("ZTEST"):
         raise Refused(f"devicetree: window-watchdog = <{label(watchdog)}> is {watchdog.matching_compat}, of which the port cannot set a "
                       "window: leave the alias out")

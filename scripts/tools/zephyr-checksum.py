@@ -35,12 +35,12 @@ class Refused(Exception):
     """One line for the user."""
 
 
-def load_address(elf, address, size):
-    """The place in flash of an address of the running program; None if it is not loaded."""
+def places(elf, address, size):
+    """The place in flash and in the file of an address of the running program; None if it is not loaded."""
     for segment in elf.iter_segments("PT_LOAD"):
-        start = segment["p_vaddr"]
-        if start <= address and address + size <= start + segment["p_filesz"]:
-            return address - start + segment["p_paddr"]
+        offset = address - segment["p_vaddr"]
+        if 0 <= offset and offset + size <= segment["p_filesz"]:
+            return offset + segment["p_paddr"], offset + segment["p_offset"]
     return None
 
 
@@ -50,9 +50,9 @@ def contents(elf):
     for section in elf.iter_sections():
         size = section["sh_size"]
         if section["sh_flags"] & 2 and section["sh_type"] != "SHT_NOBITS" and size:
-            place = load_address(elf, section["sh_addr"], size)
-            if place is not None:
-                found.append((place, section.data()))
+            found_at = places(elf, section["sh_addr"], size)
+            if found_at is not None:
+                found.append((found_at[0], section.data()))
     return sorted(found)
 
 
@@ -94,22 +94,14 @@ def table_of(pieces):
     return HEAD.pack(MAGIC, len(pieces), crc) + ranges.ljust(RANGES_MAX * RANGE.size, b"\0")
 
 
-def offset_in_file(elf, address):
-    for segment in elf.iter_segments("PT_LOAD"):
-        if segment["p_vaddr"] <= address < segment["p_vaddr"] + segment["p_filesz"]:
-            return address - segment["p_vaddr"] + segment["p_offset"]
-    raise Refused(f"{TABLE} is in no segment of the program")
-
-
 def patch(path):
     with path.open("rb") as file:
         elf = ELFFile(file)
         table = symbol(elf, TABLE)
-        start = load_address(elf, table["st_value"], table["st_size"])
+        start, offset = places(elf, table["st_value"], table["st_size"])
         first = symbol(elf, VECTORS)["st_value"]  # before it a bootloader keeps its header
         pieces = merge(cut(cut(contents(elf), 0, first), start, start + table["st_size"]))
         content = table_of(pieces)
-        offset = offset_in_file(elf, table["st_value"])
         if len(content) != table["st_size"]:
             raise Refused(f"{TABLE} has {table['st_size']} bytes, not {len(content)}")
     with path.open("r+b") as file:

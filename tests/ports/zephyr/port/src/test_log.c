@@ -14,43 +14,57 @@ enum { RECORD = 108 }; /* as large as an event of the recorder */
 static uint32_t *writes_so_far;
 static uint32_t *writes_until_the_cut;
 static uint32_t *bytes_of_the_last;
-static uint32_t *erases_until_the_cut;
 static uint32_t *erases_so_far;
 
+/* The sectors of the log, in the memory of the simulator; and copies, to try the next record in several ways. */
+enum { FLASH_MAX = 64 * 1024 };
+
+static uint8_t *flash;
+static size_t size;
+static size_t sector;
+static uint8_t before_it[FLASH_MAX];
+static uint8_t after_it[FLASH_MAX];
+
 static int find(struct stats_hdr *head, void *unused, const char *name, uint16_t offset) {
+    static const struct {
+        const char *name;
+        uint32_t **value;
+    } wanted[] = {{"flash_write_calls", &writes_so_far},
+                  {"flash_erase_calls", &erases_so_far},
+                  {"max_write_calls", &writes_until_the_cut},
+                  {"max_len", &bytes_of_the_last}};
     ARG_UNUSED(unused);
-    uint32_t *const value = (uint32_t *)((uint8_t *)head + offset);
-    if (strcmp(name, "flash_write_calls") == 0) {
-        writes_so_far = value;
-    } else if (strcmp(name, "flash_erase_calls") == 0) {
-        erases_so_far = value;
-    } else if (strcmp(name, "max_write_calls") == 0) {
-        writes_until_the_cut = value;
-    } else if (strcmp(name, "max_erase_calls") == 0) {
-        erases_until_the_cut = value;
-    } else if (strcmp(name, "max_len") == 0) {
-        bytes_of_the_last = value;
+    for (size_t i = 0u; i < ARRAY_SIZE(wanted); i++) {
+        if (strcmp(name, wanted[i].name) == 0) {
+            *wanted[i].value = (uint32_t *)((uint8_t *)head + offset);
+        }
     }
     return 0;
 }
 
 static void *setup(void) {
+    const struct flash_area *area = NULL;
+    size_t whole = 0u;
+    struct flash_pages_info page;
     (void)stats_walk(stats_group_find("flash_sim_stats"), find, NULL);
     (void)stats_walk(stats_group_find("flash_sim_thresholds"), find, NULL);
     zassert_not_null(writes_until_the_cut);
+    zassert_ok(flash_area_open(FIXED_PARTITION_ID(storage_partition), &area));
+    flash = (uint8_t *)flash_simulator_get_memory(area->fa_dev, &whole) + area->fa_off;
+    zassert_ok(flash_get_page_info_by_offs(area->fa_dev, area->fa_off, &page));
+    sector = page.size;
+    size = MIN(area->fa_size, CONFIG_AGV_LOG_SECTORS * sector);
+    zassert_true(size <= FLASH_MAX, "%u bytes of flash", (unsigned)size);
+    flash_area_close(area);
     return NULL;
 }
 
 static void erase_all(void) {
-    const struct flash_area *area = NULL;
-    zassert_ok(flash_area_open(FIXED_PARTITION_ID(storage_partition), &area));
-    zassert_ok(flash_area_flatten(area, 0, area->fa_size));
-    flash_area_close(area);
+    (void)memset(flash, 0xFF, size);
 }
 
 static void power_is_back(void) {
     *writes_until_the_cut = 0u;
-    *erases_until_the_cut = 0u;
     (void)fixture_begin();
 }
 
@@ -111,16 +125,16 @@ ZTEST(port_log, test_records_of_every_size) {
     uint8_t record[HAL_STORE_RECORD_SIZE_MAX + 1u] = {0};
     zassert_false(hal_store_append(&hal, record, 0u));
     zassert_false(hal_store_append(&hal, record, sizeof record));
-    for (size_t size = 1u; size <= HAL_STORE_RECORD_SIZE_MAX; size++) {
+    for (size_t length = 1u; length <= HAL_STORE_RECORD_SIZE_MAX; length++) {
         uint8_t read[HAL_STORE_RECORD_SIZE_MAX] = {0};
-        (void)memset(record, (int)size, size);
-        zassert_true(hal_store_append(&hal, record, size));
+        (void)memset(record, (int)length, length);
+        zassert_true(hal_store_append(&hal, record, length));
         uint32_t index = 0u;
         while (hal_store_read_record(&hal, index + 1u, read, sizeof read) != 0u) {
             index++;
         }
-        zassert_equal(hal_store_read_record(&hal, index, read, sizeof read), size);
-        zassert_mem_equal(read, record, size);
+        zassert_equal(hal_store_read_record(&hal, index, read, sizeof read), length);
+        zassert_mem_equal(read, record, length);
     }
 }
 
@@ -137,27 +151,7 @@ ZTEST(port_log, test_when_it_is_full_the_oldest_are_dropped) {
     }
 }
 
-/* A copy of the flash, to try the next record in several ways. */
-enum { FLASH_MAX = 64 * 1024 };
-
-static uint8_t before_it[FLASH_MAX];
-static uint8_t after_it[FLASH_MAX];
-
-static uint8_t *memory(size_t *size, size_t *sector) {
-    const struct flash_area *area = NULL;
-    size_t whole = 0u;
-    zassert_ok(flash_area_open(FIXED_PARTITION_ID(storage_partition), &area));
-    uint8_t *const flash = (uint8_t *)flash_simulator_get_memory(area->fa_dev, &whole) + area->fa_off;
-    struct flash_pages_info page;
-    zassert_ok(flash_get_page_info_by_offs(area->fa_dev, area->fa_off, &page));
-    *sector = page.size;
-    *size = MIN(area->fa_size, CONFIG_AGV_LOG_SECTORS * page.size);
-    zassert_true(*size <= FLASH_MAX, "%u bytes of flash", (unsigned)*size);
-    flash_area_close(area);
-    return flash;
-}
-
-static void put_back(uint8_t *flash, size_t size) {
+static void put_back(void) {
     (void)memcpy(flash, before_it, size);
     power_is_back();
 }
@@ -185,9 +179,6 @@ static void cut_this_append(uint32_t number, uint32_t nth, uint32_t bytes) {
 /* Shows: INT-3 */
 ZTEST(port_log, test_a_power_cut_in_every_write) {
     static const uint32_t bytes[] = {0u, 4u, 1u, 2u, 3u, 5u, 6u, 7u, 8u, 9u, 10u, 24u, 38u, 52u, 66u, 80u, 94u, RECORD};
-    size_t size = 0u;
-    size_t sector = 0u;
-    uint8_t *const flash = memory(&size, &sector);
     const uint32_t erased = *erases_so_far;
     uint32_t cuts = 0u;
     zassert_true(append(0u));
@@ -201,26 +192,26 @@ ZTEST(port_log, test_a_power_cut_in_every_write) {
         (void)memcpy(after_it, flash, size);
         for (uint32_t nth = 1u; nth <= writes; nth++) {
             for (size_t i = 0u; i < (finely ? ARRAY_SIZE(bytes) : 2u); i++) {
-                put_back(flash, size);
+                put_back();
                 cut_this_append(number, nth, bytes[i]);
             }
         }
         (void)memcpy(before_it, after_it, size);
-        put_back(flash, size);
+        put_back();
         cuts += *erases_so_far - erases; /* erased when the copy was restored */
     }
 }
 
 /* Possible content of a sector after an interrupted erase. */
-static void tear(uint8_t *sector, size_t size, uint32_t way) {
-    const size_t half = size / 2u;
+static void tear(uint8_t *torn, uint32_t way) {
+    const size_t half = sector / 2u;
     if (way == 0u) {
-        (void)memset(sector, 0xFF, half);
+        (void)memset(torn, 0xFF, half);
     } else if (way == 1u) {
-        (void)memset(&sector[half], 0xFF, half);
+        (void)memset(&torn[half], 0xFF, half);
     } else {
-        for (size_t i = 0u; i < size; i++) {
-            sector[i] |= (uint8_t)(0x55u << (i % 2u)); /* some bits are erased already */
+        for (size_t i = 0u; i < sector; i++) {
+            torn[i] |= (uint8_t)(0x55u << (i % 2u)); /* some bits are erased already */
         }
     }
 }
@@ -243,9 +234,6 @@ static void assert_that_it_goes_on(uint32_t newest, uint32_t way) {
 /* For each sector in turn, as the log goes around. */
 /* Shows: INT-3 */
 ZTEST(port_log, test_a_power_cut_during_an_erase) {
-    size_t size = 0u;
-    size_t sector = 0u;
-    uint8_t *const flash = memory(&size, &sector);
     uint32_t seen = 0u;
     for (uint32_t number = 0u; seen < (uint32_t)CONFIG_AGV_LOG_SECTORS; number++) {
         const uint32_t erased = *erases_so_far;
@@ -261,17 +249,17 @@ ZTEST(port_log, test_a_power_cut_during_an_erase) {
                                     (memcmp(&before_it[at], &after_it[at], sector) != 0);
             for (uint32_t way = 0u; was_erased && (way < 3u); way++) {
                 (void)memcpy(flash, before_it, size);
-                tear(&flash[at], sector, way);
+                tear(&flash[at], way);
                 power_is_back();
                 assert_that_it_goes_on(number - 1u, way);
             }
         }
         (void)memcpy(before_it, after_it, size);
-        put_back(flash, size);
+        put_back();
     }
 }
 
-static void assert_foreign_and_unchanged(const uint8_t *flash, size_t size, const char *what) {
+static void assert_foreign_and_unchanged(const char *what) {
     const uint32_t erased = *erases_so_far;
     const uint32_t written = *writes_so_far;
     (void)memcpy(before_it, flash, size);
@@ -290,53 +278,41 @@ static void assert_foreign_and_unchanged(const uint8_t *flash, size_t size, cons
 /* Shows: INT-3 */
 ZTEST(port_log, test_foreign_content_is_never_erased) {
     static const uint8_t flag[] = {0xEF, 0xBE, 0xAD, 0xDE};
-    size_t size = 0u;
-    size_t sector = 0u;
-    uint8_t *const flash = memory(&size, &sector);
     for (size_t i = 0u; i < size; i++) {
         flash[i] = (uint8_t)(i * 7u);
     }
-    assert_foreign_and_unchanged(flash, size, "a program");
+    assert_foreign_and_unchanged("a program");
     for (size_t at = 0u; at < size; at += sector) {
         (void)memset(flash, 0xFF, size);
         (void)memcpy(&flash[at], flag, sizeof flag);
-        assert_foreign_and_unchanged(flash, size, "a word");
+        assert_foreign_and_unchanged("a word");
         (void)memset(flash, 0xFF, size);
         flash[at + sector - 1u] = 0xFEu;
-        assert_foreign_and_unchanged(flash, size, "a last byte");
+        assert_foreign_and_unchanged("a last byte");
     }
 }
 
 /* The log is in its second sector: only the third one may be the result of a power cut. */
 /* Shows: INT-3 */
 ZTEST(port_log, test_foreign_content_beside_a_log_is_never_erased) {
-    size_t size = 0u;
-    size_t sector = 0u;
-    uint8_t *const flash = memory(&size, &sector);
     for (uint32_t i = 0u; flash[sector] == 0xFFu; i++) {
         zassert_true(append(i));
     }
     (void)memset(flash, 0x5A, sector);
-    assert_foreign_and_unchanged(flash, size, "the sector before the newest");
+    assert_foreign_and_unchanged("the sector before the newest");
 }
 
 /* The version in the header of a sector is the number of the log's sectors. */
 /* Shows: INT-3 */
 ZTEST(port_log, test_a_log_with_another_number_of_sectors_is_foreign) {
-    size_t size = 0u;
-    size_t sector = 0u;
-    uint8_t *const flash = memory(&size, &sector);
     zassert_true(append(1u));
     zassert_equal(flash[4], CONFIG_AGV_LOG_SECTORS);
     flash[4] = CONFIG_AGV_LOG_SECTORS - 1;
-    assert_foreign_and_unchanged(flash, size, "one sector less");
+    assert_foreign_and_unchanged("one sector less");
 }
 
 /* Shows: INT-3 */
 ZTEST(port_log, test_an_operator_can_format_foreign_content) {
-    size_t size = 0u;
-    size_t sector = 0u;
-    uint8_t *const flash = memory(&size, &sector);
     (void)memset(flash, 0x5A, size);
     power_is_back();
     uint32_t erased = 0u;
