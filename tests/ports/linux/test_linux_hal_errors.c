@@ -106,18 +106,6 @@ void test_frames_that_wait_at_bus_off_are_never_sent(void) {
     vcan_expect_id(tester, 0x102);
 }
 
-void test_frames_that_the_socket_lost_are_counted_round(void) {
-    const hal_can_frame_t foreign = vcan_frame(0x105);
-    hal.sides[HAL_CAN_VEHICLE].overruns = 65530;
-    for (unsigned i = 0; i < 2000; i++) {
-        vcan_send(tester, 0x105, 8, foreign.data);
-    }
-    const unsigned received = port_drain(&hal);
-    vcan_send(tester, 0x105, 8, foreign.data);
-    (void)port_receive(&hal);
-    expect_status(HAL_CAN_ERROR_ACTIVE, 0, (uint16_t)(65530u + 2000u - received));
-}
-
 /* Shows: SUP-7 */
 void test_an_interface_that_goes_down_and_comes_back(void) {
     const hal_can_frame_t frame = vcan_frame(0x105);

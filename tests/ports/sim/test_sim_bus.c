@@ -263,35 +263,6 @@ void test_nodes_and_taps_are_limited_and_configurations_checked(void) {
     TEST_ASSERT_EQUAL_HEX32(0x8000, fixture.events[0].senders);
 }
 
-void test_an_invalid_node_number_does_nothing(void) {
-    hal_can_frame_t frame = frame_of(1, 0, 0);
-    hal_can_status_t status = {HAL_CAN_BUS_OFF, 1, 2, 3};
-    TEST_ASSERT_FALSE(sim_bus_send(bus, 4, &frame));
-    TEST_ASSERT_FALSE(sim_bus_receive(bus, 4, &frame, NULL));
-    sim_bus_purge(bus, 4);
-    sim_bus_recover(bus, 4);
-    sim_bus_set_power(bus, 4, false);
-    sim_bus_set_plugged(bus, 4, false);
-    sim_bus_set_stalled(bus, 4, true);
-    sim_bus_set_full(bus, 4, true);
-    sim_bus_corrupt_sent(bus, 4, 1);
-    sim_bus_corrupt_received(bus, 4, 1);
-    sim_bus_set_error_counters(bus, 4, 300, 0);
-    sim_bus_force_bus_off(bus, 4);
-    sim_bus_inject_overrun(bus, 4);
-    sim_bus_deliver(bus, 4, &frame);
-    sim_bus_status(bus, 4, &status);
-    TEST_ASSERT_EQUAL_INT(HAL_CAN_ERROR_ACTIVE, status.state);
-    TEST_ASSERT_EQUAL_UINT32(0, status.tx_pending_ms);
-    TEST_ASSERT_EQUAL_UINT16(0, status.bus_off_count);
-    TEST_ASSERT_EQUAL_UINT16(0, status.overrun_count);
-    TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(bus, 4));
-    TEST_ASSERT_EQUAL_UINT(0, tec_of(&fixture, 4));
-    TEST_ASSERT_EQUAL_UINT(0, rec_of(&fixture, 4));
-    TEST_ASSERT_EQUAL_UINT8(4, sim_bus_attach(bus, NULL)); /* and it starts untouched */
-    TEST_ASSERT_TRUE(send(&fixture, 4, 1, 0, 0));
-}
-
 /* ---- Time and callbacks ---- */
 
 void test_a_time_in_the_past_changes_nothing(void) {
@@ -345,26 +316,6 @@ void test_a_callback_may_answer_at_once(void) {
     TEST_ASSERT_EQUAL_UINT(2, answerer.calls);
 }
 
-static void switch_off(void *ctx, const hal_can_frame_t *frame) {
-    (void)frame;
-    sim_bus_set_power(ctx, C, false);
-}
-
-void test_a_callback_may_switch_a_later_receiver_off(void) {
-    const sim_bus_node_config_t config = {.on_receive = switch_off, .ctx = bus};
-    fixture.event_count = 0;
-    sim_bus_init(bus, 500000);
-    sim_bus_attach(bus, NULL);
-    sim_bus_attach(bus, &config);
-    const sim_bus_node_config_t queue = {.rx_slots = 8};
-    sim_bus_attach(bus, &queue);
-    sim_bus_attach(bus, &queue);
-    send(&fixture, A, 0x300, 8, 0);
-    sim_bus_run_until(bus, 1000);
-    TEST_ASSERT_EQUAL_UINT(0, received_by(&fixture, C));
-    TEST_ASSERT_EQUAL_UINT(1, received_by(&fixture, D));
-}
-
 /* A gateway: a frame received on one bus is sent on the other at the same time, even if the other is busy. */
 void test_two_buses_run_in_the_order_of_time(void) {
     static fixture_t other;
@@ -406,22 +357,6 @@ void test_a_callback_cannot_send_into_the_past_of_another_bus(void) {
     TEST_ASSERT_EQUAL_HEX32(0x400, other.events[0].id);
     TEST_ASSERT_EQUAL_UINT64(263, other.events[0].start_us);
     TEST_ASSERT_EQUAL_HEX32(0x050, other.events[1].id);
-}
-
-/* A bus that is ahead does not go back. */
-void test_buses_that_are_not_at_one_time_catch_up(void) {
-    static fixture_t other;
-    fixture_init(&other, 500000);
-    sim_bus_t *const buses[2] = {bus, &other.bus};
-    send(&other, A, 0x400, 8, 0);
-    sim_bus_run_until(&other.bus, 200); /* busy until 264 */
-    send(&fixture, A, 0x300, 0, 0);     /* 0..104 */
-    sim_bus_run_all_until(buses, 2, 150);
-    TEST_ASSERT_EQUAL_UINT64(150, sim_bus_now_us(bus));
-    TEST_ASSERT_EQUAL_UINT64(200, sim_bus_now_us(&other.bus));
-    TEST_ASSERT_EQUAL_UINT64(104, fixture.events[0].end_us);
-    sim_bus_run_all_until(buses, 2, 300);
-    TEST_ASSERT_EQUAL_UINT64(264, other.events[0].end_us);
 }
 
 void test_a_copy_is_a_snapshot(void) {
