@@ -22,30 +22,21 @@ static const char *written(void) {
     return scratch_read("j.xml");
 }
 
-void test_one_that_could_not_be_run(void) {
-    junit_begin(&output, "s", 1u, 0u, 1u);
-    junit_error(&output, "f.yaml", "f.yaml", "a < b");
-    junit_end(&output);
-    TEST_ASSERT_EQUAL_STRING("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-                             "<testsuite name=\"s\" tests=\"1\" failures=\"0\" errors=\"1\" skipped=\"0\">\n"
-                             "  <testcase classname=\"f.yaml\" name=\"f.yaml\">\n"
-                             "    <error message=\"a &lt; b\"/>\n"
-                             "  </testcase>\n"
-                             "</testsuite>\n",
-                             written());
-}
-
-void test_a_suite_with_one_that_passed_and_one_that_failed(void) {
+void test_a_suite_of_one_that_passed_one_that_failed_and_one_that_could_not_be_run(void) {
     static const char failures[2][16] = {"a < b", "c"};
-    junit_begin(&output, "s", 2u, 1u, 0u);
+    junit_begin(&output, "s", 3u, 1u, 1u);
     junit_test(&output, "f.yaml", "one", NULL, 0u, 0u);
     junit_test(&output, "g.yaml", "two", failures[0], 2u, sizeof failures[0]);
+    junit_error(&output, "h.yaml", "h.yaml", "a < b");
     junit_end(&output);
     TEST_ASSERT_EQUAL_STRING("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-                             "<testsuite name=\"s\" tests=\"2\" failures=\"1\" errors=\"0\" skipped=\"0\">\n"
+                             "<testsuite name=\"s\" tests=\"3\" failures=\"1\" errors=\"1\" skipped=\"0\">\n"
                              "  <testcase classname=\"f.yaml\" name=\"one\"/>\n"
                              "  <testcase classname=\"g.yaml\" name=\"two\">\n"
                              "    <failure message=\"a &lt; b\">a &lt; b\nc\n</failure>\n"
+                             "  </testcase>\n"
+                             "  <testcase classname=\"h.yaml\" name=\"h.yaml\">\n"
+                             "    <error message=\"a &lt; b\"/>\n"
                              "  </testcase>\n"
                              "</testsuite>\n",
                              written());

@@ -120,12 +120,6 @@ void test_signals_and_alarms(void) {
     TEST_ASSERT_EQUAL_STRING("vehicle     autopilot", line(2));
 }
 
-void test_an_invalid_value_is_marked(void) {
-    frame(VEHICLE, 100, 0x0A3, "0300000000000000");
-    draw(100, 24);
-    TEST_ASSERT_NOT_NULL(strstr(line(11), "gear 3 (invalid)"));
-}
-
 void test_the_supervisor_in_words(void) {
     frame(VEHICLE, 100, 0x7F0, "55FF010000000000");
     char data[17];

@@ -54,8 +54,6 @@ class Front(hostsim.Case):
                                 (("demo", "reset"), "unexpected argument 'reset': did you mean '--scenario reset'?"),
                                 (("vehicle", "--can", "none", "--fault", "ai-stpo@2s"), "unknown action 'stpo': did you mean 'stop'?"),
                                 (("vehicle", "--can", "none", "--fault", "ai-mute,message=gear_comand@2s"), "did you mean 'gear_command'?"),
-                                (("replay", "--tial", "5", "log"), "unknown option '--tial': did you mean '--tail'?"),
-                                (("config", "--topology", "gatway"), "'gatway' is not one of shared|gateway: did you mean 'gateway'?"),
                                 (("demo", "--scenario", "resett"), "no scenario 'resett': did you mean 'reset'?"),
                                 (("campaign", "--runs", "1", "--seed", "1", "--fault", "bus-of"), "did you mean 'BUS_OFF'?"),
                                 (("atlas", "--second", "bus-of"), "--second: unknown fault 'bus-of': did you mean 'BUS_OFF'?"),

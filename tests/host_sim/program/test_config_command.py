@@ -142,11 +142,6 @@ class Deviations(hostsim.Case):
                                         "class_remote_signal_lost: warn (default trip, WEAKER)\n")
         self.assertTrue(result.stdout.startswith('{"t_ms"'))
 
-    def test_the_defaults_are_not_listed(self):
-        self.write("log", LOG)
-        self.write("c.yaml", "# nothing\n")
-        self.assertEqual(self.run_good("replay", "--config", "c.yaml", "log").stderr, "")
-
     # Shows: INT-2
     def test_each_command_that_runs_the_supervisor_lists_them_once(self):
         self.write("c.yaml", "mode_invalid_ms: 60\n")

@@ -43,7 +43,7 @@ ROWS = {
         *((f"--runs 3 --seed 1 --shard '{shard}'", f"--shard: '{shard}'") for shard in (
             "1", "0/2", "3/2", "1/0", "1/1001", "a/b", "1/2/3", "/2", "1/", "-1/2", "1 /2", "123456789/2")),
         ("--runs 3 --seed 1 --fault NONSENSE", "unknown fault 'NONSENSE'"),
-        ("--runs 3 --seed 1 --fault TX_GATE_REFUSED", "cannot cause TX_GATE_REFUSED"),
+        ("--runs 3 --seed 1 --fault TX_GATE_REFUSED", "a campaign does not inject TX_GATE_REFUSED"),
         ("--runs 3 --seed 1 --newly-engaged --fault BUS_OFF", "--newly-engaged: an engagement does not delay BUS_OFF"),
         ("--runs 3 --seed 1 --show 3", "no run 3"),
         ("--runs 3 --seed 1 --show 1 --results r", "--show prints one run"),

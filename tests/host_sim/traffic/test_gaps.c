@@ -33,15 +33,6 @@ void test_shortest_and_longest_are_exact(void) {
     assert_within(10017, gaps_quantile_us(&gaps, 500));
 }
 
-void test_equal_gaps_are_exact(void) {
-    for (unsigned i = 0; i < 1000; i++) {
-        gaps_add(&gaps, 0, 10000);
-    }
-    TEST_ASSERT_EQUAL_UINT64(10000, gaps_quantile_us(&gaps, 500));
-    TEST_ASSERT_EQUAL_UINT64(10000, gaps_quantile_us(&gaps, 999));
-    TEST_ASSERT_EQUAL_UINT64(10000, gaps_without_longest_us(&gaps, 10));
-}
-
 /* A median below the cycle of a sender that is never late would be a wrong figure. */
 void test_equal_gaps_are_exact_beside_a_shorter_and_a_longer_one(void) {
     gaps_add(&gaps, 0, 31000);

@@ -112,10 +112,6 @@ void test_the_status_frame(void) {
     TEST_ASSERT_EQUAL_STRING("state TRIPPED, first_reason BUS_OFF, safety_output open, page 0, alive_counter 7, "
                              "config_checksum 12345678",
                              signals_print(text, sizeof text, SIGNALS_STATUS_FRAME, status));
-    const uint8_t other[AGV_DLC] = {0x33, 0xFF, 1, 8, 0, 0, 0, 0};
-    TEST_ASSERT_EQUAL_STRING("state STANDBY, first_reason none, safety_output closed, page 0, alive_counter 8, "
-                             "config_checksum 00000000",
-                             signals_print(text, sizeof text, SIGNALS_STATUS_FRAME, other));
 }
 
 void test_the_pages_of_the_status_frame(void) {

@@ -257,27 +257,3 @@ void test_after_a_gap_there_is_no_burst(void) {
     run_until(6000u);
     TEST_ASSERT_EQUAL_size_t(100u, count_of(AGV_MSG_VEHICLE_STATUS, first));
 }
-
-void test_the_same_calls_give_the_same_frames(void) {
-    static sent_t before[LOG_MAX];
-    size_t count = 0u;
-
-    for (unsigned round = 0u; round < 2u; round++) {
-        begin();
-        (void)act(
-            (vehicle_action_t){.what = VEHICLE_DO_GARBAGE, .node = VEHICLE_AI, .garbage = VEHICLE_GARBAGE_RANDOM});
-        run_until(1000u);
-        (void)act((vehicle_action_t){.what = VEHICLE_DO_RESTART, .node = VEHICLE_VCU, .ms = 123u});
-        run_until(3000u);
-        if (round == 0u) {
-            memcpy(before, sent, sizeof before);
-            count = sent_count;
-        }
-    }
-    TEST_ASSERT_EQUAL_size_t(count, sent_count);
-    for (size_t i = 0u; i < count; i++) {
-        TEST_ASSERT_EQUAL_UINT64(before[i].t_ms, sent[i].t_ms);
-        TEST_ASSERT_EQUAL_HEX32(before[i].frame.id, sent[i].frame.id);
-        TEST_ASSERT_EQUAL_HEX8_ARRAY(before[i].frame.data, sent[i].frame.data, AGV_DLC);
-    }
-}

@@ -44,14 +44,12 @@ class OtherPrograms(Case):
         screen = self.convert("log2long")
         self.assertIn(b"[8]  00", screen)
         self.assertEqual(self.outcome(screen), self.expected)
-        self.assertEqual(self.outcome(gzip.compress(screen)), self.expected)
 
     def test_asc_of_can_utils(self):
         self.convert("log2asc", "-I", "plain.log", "-O", "log.asc", "can0")
         asc = (self.folder / "log.asc").read_bytes()
         self.assertIn(b"base hex", asc)
         self.assertEqual(self.outcome(asc), self.expected)
-        self.assertEqual(self.outcome(gzip.compress(asc)), self.expected)
 
     def test_asc_of_python_can(self):
         self.convert("/usr/bin/python3", "-m", "can.logconvert", "plain.log", "log.asc")
