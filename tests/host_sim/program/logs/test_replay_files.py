@@ -21,10 +21,6 @@ class StandardInput(hostsim.Case):
         piped = self.run_good("replay", "--events", "events.jsonl", "--out", "out.log", "-", stdin=LOG.encode())
         self.assertEqual((piped.text("events.jsonl"), piped.text("out.log")), texts)
 
-    def test_a_bad_line_of_standard_input(self):
-        result = self.run_program("replay", "-", stdin=LOG.encode() + b"nonsense\n")
-        self.assert_refused(result, "standard input:356: ")
-
     def test_no_input(self):
         for arguments, stdin in (((), b""), (("--skip-bad-lines",), b"nonsense\n" * 5)):
             self.assert_refused(self.run_program("replay", *arguments, "-", stdin=stdin), "standard input: contains no frame")
