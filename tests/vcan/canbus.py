@@ -3,19 +3,25 @@
 Run by scripts/with-vcan, where vcan0, vcan1 and vcan2 exist. HOST_SIM in the environment is the program's path.
 """
 import collections
+import fcntl
 import os
+import pathlib
+import pty
 import queue
 import re
+import select
 import signal
 import socket
 import struct
 import subprocess
 import tempfile
+import termios
 import threading
 import time
 import unittest
 
 import in_memory
+from on_time import on_time
 
 PROGRAM = os.environ["HOST_SIM"]
 if MEMORY := in_memory.folder():
@@ -163,8 +169,71 @@ class Process:
         return status
 
 
+class Terminal:
+    """The program on a terminal. `seen` is what it has written, control sequences included."""
+
+    def __init__(self, *arguments, width=80, height=24, **environment):
+        self.ours, theirs = pty.openpty()
+        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", height, width, 0, 0))
+        self.process = subprocess.Popen([PROGRAM, *map(str, arguments)], stdin=theirs, stdout=theirs,
+                                        stderr=subprocess.PIPE, start_new_session=True,
+                                        env={**os.environ, "TERM": "xterm", "LANG": "C.UTF-8", **environment})
+        os.close(theirs)
+        self.seen = b""
+
+    def read(self, seconds):
+        """Read until then. Gives whether there was something."""
+        if not select.select([self.ours], [], [], max(0, seconds))[0]:
+            return False
+        try:
+            self.seen += os.read(self.ours, 65536)
+        except OSError:  # the other end is closed
+            return False
+        return True
+
+    def wait_for(self, expression, timeout=TIMEOUT):
+        """Read until it is there. Gives the time when it was."""
+        end = time.monotonic() + timeout
+        while not re.search(expression, self.seen):
+            if time.monotonic() > end or (not self.read(end - time.monotonic()) and self.process.poll() is not None):
+                raise AssertionError("no %r in %r" % (expression, self.seen[-3000:]))
+        return time.monotonic()
+
+    def press(self, keys):
+        self.seen = b""
+        os.write(self.ours, keys)
+
+    def end(self, timeout=TIMEOUT):
+        """Wait for the end. Gives exit status and standard error."""
+        deadline = time.monotonic() + timeout
+        while self.process.poll() is None and time.monotonic() < deadline:
+            self.read(0.05)
+        while self.read(0.05):
+            pass
+        errors = self.process.communicate(timeout=timeout)[1]
+        return self.process.returncode, errors.decode()
+
+    def close(self):
+        self.process.kill()
+        self.process.communicate()
+        os.close(self.ours)
+
+
 class Case(unittest.TestCase):
-    """A test that closes what it opens."""
+    """A test that closes what it opens, and has a folder. It is run again when the machine was delayed."""
+
+    def __init_subclass__(cls):
+        for name, member in list(vars(cls).items()):
+            if name.startswith("test_"):
+                setattr(cls, name, on_time(member))
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="host_sim.")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def check_every_run(self):
+        """What must be true after each test."""
 
     def bus(self, interface="vcan0"):
         bus = Bus(interface)
@@ -175,6 +244,11 @@ class Case(unittest.TestCase):
         process = Process(*arguments, **options)
         self.addCleanup(process.end, signal.SIGKILL)
         return process
+
+    def terminal(self, *arguments, **options):
+        terminal = Terminal(*arguments, **options)
+        self.addCleanup(terminal.close)
+        return terminal
 
     def run_to_end(self, *arguments, timeout=TIMEOUT):
         """Exit status, standard output and standard error of a run that ends by itself."""

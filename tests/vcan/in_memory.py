@@ -29,6 +29,7 @@ def bring(programs, into):
     """Copies of these programs, and of what they are linked with. What is started from now on finds them."""
     libraries = {library for program in programs for library in libraries_of(program)}
     for path in [*programs, *libraries]:
-        shutil.copy(path, into)
+        if os.path.dirname(path) != into:
+            shutil.copy(path, into)
     os.environ["PATH"] = into + ":" + os.environ.get("PATH", "")
     os.environ["LD_LIBRARY_PATH"] = into

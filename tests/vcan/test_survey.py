@@ -1,24 +1,18 @@
 """host_sim survey --can on a virtual bus: it hears what is there, sends nothing, ends in time or by a signal."""
 import json
-import pathlib
 import signal
 import subprocess
-import tempfile
 
 import canbus
-from player import CYCLES, Player
+from clients import MESSAGES
+
+CYCLES = {can_id: cycle for can_id, (cycle, _, _) in MESSAGES.items()}  # in milliseconds
 
 
 class Survey(canbus.Case):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="host_sim.")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def player(self, *interfaces):
-        player = Player(*interfaces)
-        self.addCleanup(player.stop)
-        return player
+    def vehicle(self, *arguments):
+        self.start("vehicle", "--can", "vcan0", *arguments)
+        self.bus().wait_for(0x0A3)
 
     def survey(self, *arguments):
         """The result of a survey that ends by itself."""
@@ -28,10 +22,8 @@ class Survey(canbus.Case):
 
     def test_every_message_is_heard_and_nothing_is_sent(self):
         listener = self.bus()
-        player = self.player("vcan0")
-        player.engage()
+        self.vehicle()
         survey = self.survey("--can", "vcan0", "--for", "2s")
-        player.stop()
         self.assertEqual(survey["source"], "vcan0")
         self.assertEqual(survey["interfaces"], ["vcan0"])
         self.assertEqual({int(message["id"], 16) for message in survey["messages"]}, set(CYCLES))
@@ -44,7 +36,7 @@ class Survey(canbus.Case):
         self.assertFalse([frame for frame in listener.listen(0) if frame.id not in CYCLES])
 
     def test_a_signal_ends_it_with_the_result(self):
-        self.player("vcan0")
+        self.vehicle("--manual")
         process = self.start("survey", "--can", "vcan0", "--config-out", self.folder / "config.yaml", "--json")
         self.bus().listen(1.5)
         self.assertEqual(process.end(signal.SIGINT), 0)
@@ -52,7 +44,7 @@ class Survey(canbus.Case):
         self.assertIn("# Proposed by host_sim survey from vcan0\n", (self.folder / "config.yaml").read_text())
 
     def test_two_interfaces_are_a_gateway(self):
-        self.player("vcan0", "vcan1")
+        self.vehicle("--ai-can", "vcan1")
         survey = self.survey("--can", "vcan0", "--ai-can", "vcan1", "--for", "1s")
         sides = {message["name"]: message["side"] for message in survey["messages"]}
         self.assertEqual(sides["steering_command"], "ai")
