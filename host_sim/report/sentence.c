@@ -196,11 +196,11 @@ static void say_limit(char text[SENTENCE_SIZE], const agv_config_t *config, cons
     char limit[LIMIT_SIZE];
     const uint16_t budget = budget_ms(config, trip->reason);
     const char *space = (text[0] != '\0') ? " " : "";
+    say(text, "%sThe limit of this fault is %s", space, limit_text(trip, limit));
     if (budget > 0u) {
-        say(text, "%sThe limit of this fault is %s for %u ms in all.", space, limit_text(trip, limit), budget);
-    } else {
-        say(text, "%sThe limit of this fault is %s.", space, limit_text(trip, limit));
+        say(text, " for %u ms in all", budget);
     }
+    say(text, ".");
 }
 
 static void say_cause(char text[SENTENCE_SIZE], const agv_config_t *config, const why_trip_t *trip) {
