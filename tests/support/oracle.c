@@ -27,11 +27,14 @@ void oracle_configure(oracle_t *oracle, const agv_config_t *config) {
     oracle->own_status_id = config->status_frame_id;
     oracle->hold_age_ms = config->hold_age_ms;
     oracle->mode_invalid_ms = config->mode_invalid_ms;
+    oracle->angle_frames = config->status_invalid_frames;
 }
 
 void oracle_restart(oracle_t *oracle) {
     oracle->angle_known = false;
     oracle->angles = 0u;
+    oracle->angle_score = 0u;
+    oracle->angle_unusable = false;
     oracle->held_sent_ms = oracle->now_ms;
     oracle->ticked_ms = oracle->now_ms;
     oracle->latched = false;
@@ -98,7 +101,7 @@ static void follow(oracle_t *oracle, agv_state_t state) {
         ((oracle->now_ms - oracle->angle_ms) <= oracle->hold_age_ms)) {
         hold(oracle);
     }
-    if (!latched || manual_is_reported(oracle)) {
+    if (!latched || oracle->angle_unusable || manual_is_reported(oracle)) {
         oracle->held = false;
     }
     if (state != oracle->before) {
@@ -122,9 +125,24 @@ void oracle_tick(oracle_t *oracle, uint32_t now_ms) {
     oracle->in_tick = true;
 }
 
-/* If no angle is held, the first valid angle after the trip is. */
+/* STEERING_ANGLE_INVALID: a bad 067h counts 2, a good one takes 1 off. */
+static void score_angle(oracle_t *oracle, bool bad) {
+    const uint32_t full = 2u * oracle->angle_frames;
+    if (bad) {
+        oracle->angle_score = ((oracle->angle_score + 2u) < full) ? (oracle->angle_score + 2u) : full;
+    } else if ((oracle->angle_score != 0u) && (oracle->angle_frames > 1u)) {
+        oracle->angle_score--;
+    } else {
+        oracle->angle_score = 0u;
+    }
+    oracle->angle_unusable = (oracle->angle_score == full) || (oracle->angle_unusable && (oracle->angle_score != 0u));
+    oracle->held = oracle->held && !oracle->angle_unusable;
+}
+
+/* If no angle is held, the first usable angle after the trip is. */
 static void on_angle(oracle_t *oracle, const hal_can_frame_t *frame) {
     const uint16_t raw = word_at(&frame->data[2]);
+    score_angle(oracle, raw > 18000u);
     if (raw > 18000u) {
         return;
     }
@@ -134,7 +152,7 @@ static void on_angle(oracle_t *oracle, const hal_can_frame_t *frame) {
     oracle->recent_raw[oracle->angles % ORACLE_ANGLES] = raw;
     oracle->recent_ms[oracle->angles % ORACLE_ANGLES] = frame->time_ms;
     oracle->angles++;
-    if (oracle->latched && !oracle->held && !manual_is_reported(oracle)) {
+    if (oracle->latched && !oracle->held && !oracle->angle_unusable && !manual_is_reported(oracle)) {
         hold(oracle);
     }
 }

@@ -49,7 +49,10 @@ typedef struct {
     uint32_t held_sent_ms; /* last own 065h; the trip before the first one */
     uint16_t recent_raw[ORACLE_ANGLES];
     uint32_t recent_ms[ORACLE_ANGLES];
-    uint32_t angles;     /* valid ones received */
+    uint32_t angles;       /* valid ones received */
+    uint32_t angle_frames; /* for a score */
+    uint32_t angle_score;
+    bool angle_unusable; /* invalid by its score */
     bool eps_was_unfit;  /* since the last 065h: a fault, another mode, or a gap, so that the angle may be taken anew */
     uint8_t eps_counter; /* of the last 067h */
     uint32_t eps_ms;     /* last 067h with a changed counter */

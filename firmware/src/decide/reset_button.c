@@ -12,15 +12,24 @@ void agv_reset_button_report(agv_reset_button_t *reset, bool vcu_alive, bool rem
     const agv_button_t heard = down ? AGV_BUTTON_DOWN : AGV_BUTTON_UP;
     if (vcu_alive) {
         reset->button = (uint8_t)(remote_lost ? AGV_BUTTON_UNHEARD : heard);
+        if (reset->button != (uint8_t)AGV_BUTTON_UP) {
+            reset->up_frames = 0u;
+        } else if (reset->up_frames < AGV_BUTTON_UP_FRAMES) {
+            reset->up_frames++;
+        } else {
+            /* up for long enough */
+        }
     }
 }
 
 void agv_reset_button_read(agv_reset_button_t *reset, uint8_t button) {
     reset->button = button;
+    reset->up_frames = AGV_BUTTON_UP_FRAMES; /* debounced */
 }
 
 void agv_reset_button_lose(agv_reset_button_t *reset) {
     reset->button = AGV_BUTTON_UNKNOWN;
+    reset->up_frames = 0u;
 }
 
 /* Each button has two timers. */
@@ -39,9 +48,14 @@ static void forget_press(agv_reset_button_t *reset, agv_timers_t *timers) {
     agv_timer_stop(timers, long_press_timer(reset));
 }
 
+/* Up, and not for a glitch only. */
+static bool is_up(const agv_reset_button_t *reset) {
+    return (reset->button == (uint8_t)AGV_BUTTON_UP) && (reset->up_frames == AGV_BUTTON_UP_FRAMES);
+}
+
 void agv_reset_button_trip(agv_reset_button_t *reset, agv_timers_t *timers) {
     forget_press(reset, timers);
-    reset->before = reset->button; /* a button that is down at the trip has no rising edge after it */
+    reset->was_up = is_up(reset); /* a button that is down at the trip has no rising edge after it */
     (void)memset(reset->held_ms, 0, sizeof reset->held_ms);
 }
 
@@ -79,7 +93,7 @@ static void follow_conditions(agv_reset_button_t *reset, const agv_config_t *con
 
 static void follow_press(agv_reset_button_t *reset, agv_timers_t *timers) {
     if (reset->button == (uint8_t)AGV_BUTTON_DOWN) {
-        reset->began_after = reset->began_after || (reset->before == (uint8_t)AGV_BUTTON_UP);
+        reset->began_after = reset->began_after || reset->was_up;
         (void)agv_timer_while(timers, press_timer(reset), true);
         (void)agv_timer_while(timers, long_press_timer(reset), true);
     }
@@ -112,6 +126,6 @@ agv_press_result_t agv_reset_button_step(agv_reset_button_t *reset, agv_timers_t
     if (!is_down) {
         forget_press(reset, timers);
     }
-    reset->before = reset->button;
+    reset->was_up = is_up(reset);
     return result;
 }

@@ -17,21 +17,26 @@
 /** Number of conditions of a reset. */
 #define AGV_RESET_CONDITIONS 9u
 
+/** A press begins with a rising edge only if this many 363h in a row have reported the button up: one alone is a glitch. */
+#define AGV_BUTTON_UP_FRAMES 3u
+
 /** A button and its press. */
 typedef struct {
     uint16_t held_ms[AGV_RESET_CONDITIONS]; /**< how long each condition has held, up to reset_hold_ms */
-    uint8_t button;   /**< agv_button_t; of the remote from the last 363h while the VCU is alive */
-    uint8_t before;   /**< `button` at the last step */
-    bool began_after; /**< this press began with a rising edge after the trip */
-    bool answered;    /**< this press was reported */
-    bool is_pin;      /**< the push button on the reset input; false: remote button 1 */
+    uint8_t button;    /**< agv_button_t; of the remote from the last 363h while the VCU is alive */
+    uint8_t up_frames; /**< consecutive 363h in which it is up, up to AGV_BUTTON_UP_FRAMES */
+    bool was_up;       /**< at the last step, and for AGV_BUTTON_UP_FRAMES: a press that begins now has a rising edge */
+    bool began_after;  /**< this press began with a rising edge after the trip */
+    bool answered;     /**< this press was reported */
+    bool is_pin;       /**< the push button on the reset input; false: remote button 1 */
 } agv_reset_button_t;
 
 /** Result of a press. */
 typedef enum { AGV_PRESS_NOTHING, AGV_PRESS_RESETS, AGV_PRESS_IN_VAIN } agv_press_result_t;
 
 /**
- * Handle the button state in a 363h. It is ignored if the VCU is not alive. While the remote receiver is lost, what
+ * Handle the button state in a 363h. It is ignored if the VCU is not alive. Fewer than AGV_BUTTON_UP_FRAMES reports of a
+ * button that is up end a press, but the next one has no rising edge. While the remote receiver is lost, what
  * 363h says of the button does not count: it ends a press without a release, and a button that is pressed when the receiver
  * returns is not a rising edge.
  */

@@ -19,6 +19,10 @@ void agv_commands_forget(agv_commands_t *commands) {
     commands->known = 0u;
 }
 
+void agv_commands_forget_gear(agv_commands_t *commands) {
+    commands->known &= (uint8_t)~agv_message_bit(AGV_MSG_GEAR_COMMAND);
+}
+
 bool agv_commands_has(const agv_commands_t *commands, uint32_t command) {
     return (commands->known & agv_message_bit(command)) != 0u;
 }

@@ -26,6 +26,9 @@ void agv_commands_take(agv_commands_t *commands, uint32_t command, const uint8_t
 /** Forget all commands, because an engagement began. */
 void agv_commands_forget(agv_commands_t *commands);
 
+/** Forget the commanded gear, because autopilot was left or entered: the operator may have changed it. */
+void agv_commands_forget_gear(agv_commands_t *commands);
+
 /** Whether a valid command of this kind was received in this engagement. */
 bool agv_commands_has(const agv_commands_t *commands, uint32_t command);
 

@@ -269,7 +269,7 @@ static void pass_on(agv_core_t *core, const agv_tx_orders_t *orders, const intak
     if (is_command(intake->message)) {
         const agv_gateway_facts_t facts = agv_core_gateway_facts(core);
         agv_gateway_follow_gear(&core->gateway, &facts, intake->message, frame.data);
-        if (!agv_gateway_passes(&facts, intake->message, frame.data)) {
+        if (!agv_gateway_passes(&core->gateway, &facts, intake->message, frame.data)) {
             core->counters.dropped++;
             return;
         }

@@ -55,20 +55,24 @@ agv_gateway_facts_t agv_core_gateway_facts(const agv_core_t *core) {
                                  .now_ms = core->timers.now_ms,
                                  .gear_sent = gear_sent ? core->commands.gear : 0u,
                                  .gear_fresh = agv_liveness_fresh(&core->liveness, &core->timers, AGV_MSG_GEAR_STATUS),
+                                 .angle_fresh = agv_timer_is_within(&core->timers, AGV_TIMER_ANGLE),
                                  .autopilot = agv_mode_reports_autopilot(&core->mode),
                                  .standstill = agv_vehicle_is_at_standstill(&core->timers)};
 }
 
-/* FSM-10: EPS alive and without a fault, in angle control, manual not reported. A stale 167h is a fault of the EPS. */
+/*
+ * FSM-10: EPS alive and without a fault, in angle control, its measured angle valid, manual not reported. A stale 167h is a
+ * fault of the EPS.
+ */
 static bool eps_takes_angles(const agv_core_t *core) {
     return agv_liveness_alive(&core->liveness, AGV_NODE_EPS) && core->vehicle.eps_in_angle_mode &&
-           !agv_mode_is_manual(&core->mode) && !core->faults.summary.eps_fault;
+           agv_status_checks_angle_is_usable(&core->status_checks) && !agv_mode_is_manual(&core->mode) &&
+           !core->faults.summary.eps_fault;
 }
 
-/* FSM-10: moreover the measured angle is valid, and the wheels have not stood for long. */
+/* FSM-10: moreover the wheels have not stood for long. */
 static bool is_holdable(const agv_core_t *core) {
-    return eps_takes_angles(core) && agv_status_checks_angle_is_usable(&core->status_checks) &&
-           !agv_timer_reached(&core->timers, AGV_TIMER_WHEELS_STOOD);
+    return eps_takes_angles(core) && !agv_timer_reached(&core->timers, AGV_TIMER_WHEELS_STOOD);
 }
 
 agv_tx_orders_t agv_core_orders(agv_core_t *core, const agv_ports_t *ports) {
@@ -266,16 +270,25 @@ static bool follow_state(agv_core_t *core, hal_t *hal, uint32_t what, uint32_t e
     }
     if ((what & AGV_ACTION_STATE) != 0u) {
         agv_gateway_restart(&core->gateway);
+        agv_commands_forget_gear(&core->commands);
     }
     return withdrawn || ((what & AGV_ACTION_TRIP) != 0u);
 }
 
-/* A motion command outlasts no change of state, whatever passes in manual. */
+/* A motion command outlasts no change of state, whatever passes in manual. A gear that needs standstill does not outlast it. */
+static bool may_wait_on(agv_core_t *core, const agv_gateway_facts_t *facts, uint32_t command, bool state_changed) {
+    const uint8_t *const data = agv_transmitter_passed(&core->transmitter, command);
+    if (state_changed && (command != (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND)) {
+        return false;
+    }
+    agv_gateway_follow_gear(&core->gateway, facts, command, data);
+    return agv_gateway_passes(&core->gateway, facts, command, data);
+}
+
 static void drop_what_may_not_wait(agv_core_t *core, bool state_changed) {
     const agv_gateway_facts_t facts = agv_core_gateway_facts(core);
     for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
-        const bool outdated = state_changed && (i != (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND);
-        if (outdated || !agv_gateway_may_wait(&facts, i)) {
+        if (((core->transmitter.kept & agv_message_bit(i)) != 0u) && !may_wait_on(core, &facts, i, state_changed)) {
             agv_transmitter_drop(&core->transmitter, &core->timers, i);
         }
     }

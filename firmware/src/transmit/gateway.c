@@ -44,9 +44,23 @@ void agv_gateway_follow_gear(agv_gateway_t *gateway, const agv_gateway_facts_t *
     gateway->gear_waits = changes_gear_in_motion(facts, data[0]) && (data[0] != facts->gear_sent);
 }
 
-bool agv_gateway_passes(const agv_gateway_facts_t *facts, uint32_t command, const uint8_t data[AGV_DLC]) {
-    const bool gear_stays = (command != (uint32_t)AGV_MSG_GEAR_COMMAND) || !changes_gear_in_motion(facts, data[0]);
-    return agv_gateway_may_wait(facts, command) && gear_stays;
+/* The slew limit starts at the measured angle, and does so again until the EPS takes angles. */
+static bool starts_slew(const agv_gateway_t *gateway, const agv_gateway_facts_t *facts) {
+    return !gateway->steering_known || (!gateway->steering_taken && !facts->vehicle->eps_in_angle_mode);
+}
+
+/* A slew limit does not start at an angle that is out of date: the command would turn the steering there. */
+static bool lacks_angle(const agv_gateway_t *gateway, const agv_gateway_facts_t *facts) {
+    return (facts->config->steering_slew_ddeg_s != 0u) && starts_slew(gateway, facts) && !facts->angle_fresh;
+}
+
+bool agv_gateway_passes(const agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t command,
+                        const uint8_t data[AGV_DLC]) {
+    if (command == (uint32_t)AGV_MSG_GEAR_COMMAND) {
+        return agv_gateway_may_wait(facts, command) && !changes_gear_in_motion(facts, data[0]);
+    }
+    return agv_gateway_may_wait(facts, command) &&
+           ((command != (uint32_t)AGV_MSG_STEERING_COMMAND) || !lacks_angle(gateway, facts));
 }
 
 void agv_gateway_restart(agv_gateway_t *gateway) {
@@ -112,23 +126,23 @@ static uint32_t limit_to_speed(const agv_gateway_facts_t *facts, uint32_t wanted
 }
 
 /*
- * The limit starts at the measured angle, one cycle ago, and does so again until the EPS takes angles. What an EPS says later
- * does not start it again: with one that is stuck, the commands would never leave the measured angle (SUP-10).
+ * The limit starts one cycle ago. What an EPS says later does not start it again: with one that is stuck, the commands would
+ * never leave the measured angle (SUP-10).
  */
-static void begin_slew(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t wanted_raw) {
-    gateway->steering_taken = gateway->steering_taken || facts->vehicle->eps_in_angle_mode;
-    if (!gateway->steering_known || !gateway->steering_taken) {
-        const uint32_t from_raw = facts->vehicle->angle_known ? facts->vehicle->angle_raw : wanted_raw;
+static void begin_slew(agv_gateway_t *gateway, const agv_gateway_facts_t *facts) {
+    if (starts_slew(gateway, facts)) {
         gateway->steering_known = true;
-        reach(&gateway->steering, from_raw, facts->now_ms - agv_message_cycle_ms(AGV_MSG_STEERING_COMMAND));
+        reach(&gateway->steering, facts->vehicle->angle_raw,
+              facts->now_ms - agv_message_cycle_ms(AGV_MSG_STEERING_COMMAND));
     }
+    gateway->steering_taken = gateway->steering_taken || facts->vehicle->eps_in_angle_mode;
 }
 
 /* Raw angles: a step is a tenth of a degree. */
 static uint32_t limit_slew(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t wanted_raw) {
     agv_gateway_rate_t *const rate = &gateway->steering;
     const uint32_t slew_ddeg_s = facts->config->steering_slew_ddeg_s;
-    begin_slew(gateway, facts, wanted_raw);
+    begin_slew(gateway, facts);
     if (slew_ddeg_s != 0u) {
         const int32_t from = (int32_t)rate->value;
         const int32_t step = (int32_t)take_steps(rate, slew_ddeg_s, 1000u, facts->now_ms);

@@ -38,6 +38,7 @@ typedef struct {
     uint32_t now_ms;
     uint8_t gear_sent; /**< gear of the last 168h that was sent in this engagement; 0: none */
     bool gear_fresh;   /**< 0A3h is fresh */
+    bool angle_fresh;  /**< the last valid 067h is at most hold_age_ms old */
     bool autopilot;    /**< the last 363h reports autopilot */
     bool standstill;
 } agv_gateway_facts_t;
@@ -50,8 +51,12 @@ typedef struct {
 void agv_gateway_follow_gear(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t command,
                              const uint8_t data[AGV_DLC]);
 
-/** Whether a command is forwarded; depends on state, mode and, for a gear that needs it, standstill. */
-bool agv_gateway_passes(const agv_gateway_facts_t *facts, uint32_t command, const uint8_t data[AGV_DLC]);
+/**
+ * Whether a command is forwarded, or may still be sent after it waited; depends on state, mode, for a gear that needs it on
+ * standstill, and for the first 065h under a slew limit on a measured angle to start from.
+ */
+bool agv_gateway_passes(const agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t command,
+                        const uint8_t data[AGV_DLC]);
 
 /** Whether a waiting command may still be sent. */
 bool agv_gateway_may_wait(const agv_gateway_facts_t *facts, uint32_t command);

@@ -227,6 +227,8 @@ static bool is_too_soon(agv_transmitter_t *transmitter, uint32_t message, uint32
 static void note_passed(agv_transmitter_t *transmitter, uint32_t message, uint32_t now_ms) {
     transmitter->kept &= ~agv_message_bit(message);
     if (message < AGV_COMMAND_COUNT) {
+        transmitter->throttle_0_waits =
+            transmitter->throttle_0_waits && (message != (uint32_t)AGV_MSG_THROTTLE_COMMAND);
         transmitter->report.passed |= (uint8_t)agv_message_bit(message);
         transmitter->passed_lately |= (uint8_t)agv_message_bit(message);
         transmitter->passed_ms[message] = now_ms;
@@ -245,11 +247,9 @@ static void send_passed(agv_transmitter_t *transmitter, const agv_tx_orders_t *o
 }
 
 void agv_transmitter_drop(agv_transmitter_t *transmitter, agv_timers_t *timers, uint32_t command) {
-    if ((transmitter->kept & agv_message_bit(command)) != 0u) {
-        transmitter->kept &= ~agv_message_bit(command);
-        transmitter->report.dropped++;
-        agv_timer_stop(timers, waits[command]);
-    }
+    transmitter->kept &= ~agv_message_bit(command);
+    transmitter->report.dropped++;
+    agv_timer_stop(timers, waits[command]);
 }
 
 static void send_throttle_0(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
@@ -272,9 +272,6 @@ void agv_transmitter_pass(agv_transmitter_t *transmitter, const agv_tx_orders_t 
                           const uint8_t data[AGV_DLC]) {
     if ((transmitter->kept & agv_message_bit(message)) != 0u) {
         transmitter->report.dropped++; /* the older waiting one */
-    }
-    if (message == (uint32_t)AGV_MSG_THROTTLE_COMMAND) {
-        transmitter->throttle_0_waits = false;
     }
     (void)memcpy(transmitter->kept_data[message], data, AGV_DLC);
     send_passed(transmitter, orders, message);
@@ -385,6 +382,7 @@ void agv_transmitter_status(agv_transmitter_t *transmitter, const agv_tx_orders_
     if (due) {
         transmitter->status_due_ms +=
             ((late_ms / config->status_frame_period_ms) + 1u) * config->status_frame_period_ms;
+        transmitter->status_due_ms += orders->passive ? AGV_SCHEDULER_SHIFT_MS : 0u;
     }
     (void)agv_timer_while(orders->timers, AGV_TIMER_TX_STATUS, has_to_wait);
 }

@@ -112,7 +112,7 @@ void agv_transmitter_answer(agv_transmitter_t *transmitter, const agv_tx_orders_
 void agv_transmitter_pass(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t message,
                           const uint8_t data[AGV_DLC]);
 
-/** Drop a command that waits to be forwarded. */
+/** Drop a command that waits to be forwarded: its bit is set in `kept`. */
 void agv_transmitter_drop(agv_transmitter_t *transmitter, agv_timers_t *timers, uint32_t command);
 
 /**

@@ -49,7 +49,7 @@ void test_safe_holds_the_same_angle(void) {
 }
 
 /* Shows: FSM-10, STEERING_ANGLE_INVALID */
-void test_an_invalid_angle_is_no_hold_angle(void) {
+void test_an_invalid_angle_drops_the_held_angle(void) {
     fixture_angle(&f, 9050);
     fixture_active(&f);
     fixture_mute_ai(&f, true);
@@ -58,8 +58,8 @@ void test_an_invalid_angle_is_no_hold_angle(void) {
     expect_reason(&f, AGV_FAULT_STEERING_ANGLE_INVALID);
     expect_not_held_for_a_second(); /* no command to an EPS that reports no angle */
     fixture_angle(&f, 9400);
-    fixture_run(&f, 100); /* six good ones take the score from 6 to 0 */
-    expect_held_for_a_second(9050);
+    fixture_run(&f, 100);           /* six good ones take the score from 6 to 0 */
+    expect_held_for_a_second(9400); /* meanwhile the EPS may have turned */
 }
 
 /* ---- Only with a healthy EPS ---- */
@@ -375,7 +375,7 @@ void test_a_press_in_vain_leaves_the_held_angle(void) {
 /* ---- After a restart ---- */
 
 /* Shows: FSM-10, FSM-7 */
-void test_after_a_restart_the_first_valid_angle_is_held(void) {
+void test_after_a_restart_the_first_usable_angle_is_held(void) {
     f.long_run = true;
     fixture_angle(&f, 9100);
     fixture_command_angle(&f, 9100);
@@ -387,9 +387,9 @@ void test_after_a_restart_the_first_valid_angle_is_held(void) {
     expect_count_after(&f, 200, 0x065, 0);
     fixture_angle(&f, 9210);
     fixture_run_past(&f, AGV_MSG_STEERING_STATUS);
-    fixture_angle(&f, 9320);
+    fixture_angle(&f, 9320); /* six good ones take the score from 6 to 0 */
     fixture_run(&f, 100);
-    expect_held_for_a_second(9210);
+    expect_held_for_a_second(9320);
 }
 
 /* The first counter after a start is only the baseline; LOST comes 50 ms later. */

@@ -122,6 +122,7 @@ void test_each_missing_condition_refuses_and_is_named_once_a_press(void) {
         expect_refusals(0, 0);
         walk_button(&f, false);
         expect_refusals(1, missing);
+        fixture_run(&f, 30);
         walk_button(&f, true);
         fixture_run(&f, 5001);
         expect_refusals(2, missing | AGV_MISSING_RELEASED);

@@ -129,6 +129,7 @@ static void sound_config(agv_config_t *config) {
 static void sound_reset_button(agv_reset_button_t *reset) {
     reset->began_after = any_bool();
     reset->answered = any_bool();
+    reset->was_up = any_bool();
     reset->is_pin = any_bool();
 }
 

@@ -226,12 +226,13 @@ static uint8_t engagements(void) {
 }
 
 /*
- * 0: no press; 1: began before the trip; 2: began after it; in SAFE also 3: long enough; 4: answered without a reset.
+ * 0: no press; 1: began before the trip; 2: began after it; in SAFE also 3: long enough; 4: answered without a reset;
+ * 5: no press, and the next one has no rising edge yet.
  */
 static uint8_t press(void) {
     const agv_reset_button_t *reset = &core()->reset_button;
     if (reset->button != (uint8_t)AGV_BUTTON_DOWN) {
-        return 0;
+        return reset->was_up ? 0 : 5;
     }
     if (!reset->began_after || (core()->machine.state != (uint8_t)AGV_STATE_SAFE)) {
         return reset->began_after ? 2 : 1;

@@ -28,33 +28,39 @@
   logic integer press{L}(agv_reset_button_t *r) = r->is_pin != 0 ? AGV_TIMER_PIN_PRESS : AGV_TIMER_PRESS;
   logic integer long_press{L}(agv_reset_button_t *r) = r->is_pin != 0 ? AGV_TIMER_PIN_PRESS_LONG : AGV_TIMER_PRESS_LONG;
 
+  // ---- A button that is up, and was so in three 363h in a row; the debounced pin counts at once.
+  predicate is_up{L}(agv_reset_button_t *r) = r->button == 2 && r->up_frames == 3;
+
   predicate reset_ready{L}(agv_reset_button_t *r, agv_timers_t *t, agv_config_t *c) =
       \valid(r) && \valid(t) && \valid_read(c) && \separated(r, t, c) && r->button <= 3;
 */
 
-/*@ requires \valid(reset);
-    assigns reset->button;
+/*@ requires \valid(reset) && reset->up_frames <= 3;
+    assigns reset->button, reset->up_frames;
+    ensures vcu_alive == 0 ==> reset->up_frames == \old(reset->up_frames);
+    ensures vcu_alive != 0 ==> reset->up_frames == (remote_lost != 0 || down != 0 ? 0 :
+                \old(reset->up_frames) < 3 ? \old(reset->up_frames) + 1 : 3);
     ensures reset->button == (vcu_alive == 0 ? \old(reset->button) : remote_lost != 0 ? 3 : down != 0 ? 1 : 2);
 */
 void agv_reset_button_report(agv_reset_button_t *reset, bool vcu_alive, bool remote_lost, bool down);
 
 /*@ requires \valid(reset);
-    assigns reset->button;
-    ensures reset->button == button;
+    assigns reset->button, reset->up_frames;
+    ensures reset->button == button && reset->up_frames == 3;
 */
 void agv_reset_button_read(agv_reset_button_t *reset, uint8_t button);
 
 /*@ requires \valid(reset);
-    assigns reset->button;
-    ensures reset->button == 0;
+    assigns reset->button, reset->up_frames;
+    ensures reset->button == 0 && reset->up_frames == 0;
 */
 void agv_reset_button_lose(agv_reset_button_t *reset);
 
 /*@ // At the trip: a press that began before it is forgotten, and no condition has held yet.
     requires \valid(reset) && \valid(timers) && \separated(reset, timers);
-    assigns reset->began_after, reset->answered, reset->before, reset->held_ms[0 .. 8];
+    assigns reset->began_after, reset->answered, reset->was_up, reset->held_ms[0 .. 8];
     assigns timers->phase[press(reset)], timers->phase[long_press(reset)];
-    ensures reset->began_after == 0 && reset->before == reset->button;
+    ensures reset->began_after == 0 && (reset->was_up != 0 <==> is_up(reset));
     ensures timers->phase[press(reset)] == 0 && timers->phase[long_press(reset)] == 0;
     ensures \forall integer i; 0 <= i < 9 ==> reset->held_ms[i] == 0;
 */
@@ -65,17 +71,17 @@ void agv_reset_button_trip(agv_reset_button_t *reset, agv_timers_t *timers);
     requires reset_ready(reset, timers, config) && \valid(missing);
     requires \separated(missing, reset, timers, config);
     requires held_in_range(reset, config) && config->reset_hold_ms >= 1;
-    assigns reset->held_ms[0 .. 8], reset->before, reset->began_after, reset->answered, *missing, timers->due_ms;
+    assigns reset->held_ms[0 .. 8], reset->was_up, reset->began_after, reset->answered, *missing, timers->due_ms;
     assigns timers->since_ms[press(reset)], timers->since_ms[long_press(reset)];
     assigns timers->phase[press(reset)], timers->phase[long_press(reset)];
-    ensures held_in_range(reset, config) && reset->before == reset->button;
+    ensures held_in_range(reset, config) && (reset->was_up != 0 <==> is_up(reset));
     ensures \result == AGV_PRESS_RESETS <==>
                 reset->button == 2 && \old(reset->began_after) != 0 && \old(reset->answered) == 0 &&
                 \old(reached(timers, press(reset))) && !\old(reached(timers, long_press(reset))) &&
                 all_held(reset, config);
     ensures \result == AGV_PRESS_RESETS ==> \forall integer i; 0 <= i < 9 ==> (lacking & bit_of(i)) == 0;
     // A press begins with a rising edge, and ends when the button is not down.
-    ensures reset->began_after != 0 ==> reset->button == 1 && (\old(reset->began_after) != 0 || \old(reset->before) == 2);
+    ensures reset->began_after != 0 ==> reset->button == 1 && (\old(reset->began_after) != 0 || \old(reset->was_up) != 0);
     ensures reset->button != 1 ==> timers->phase[press(reset)] == 0 && timers->phase[long_press(reset)] == 0;
     ensures \forall integer i; 0 <= i < 9 && (lacking & bit_of(i)) != 0 ==> reset->held_ms[i] == 0;
     ensures \forall integer i; 0 <= i < 9 && (lacking & bit_of(i)) == 0 ==>

@@ -43,7 +43,7 @@ static void follow_conditions(agv_reset_button_t *reset, const agv_config_t *con
     assigns timers->since_ms[press(reset)], timers->since_ms[long_press(reset)];
     assigns timers->phase[press(reset)], timers->phase[long_press(reset)];
     ensures reset->button != 1 ==> reset->began_after == \old(reset->began_after);
-    ensures reset->button == 1 ==> (reset->began_after != 0 <==> \old(reset->began_after) != 0 || reset->before == 2);
+    ensures reset->button == 1 ==> (reset->began_after != 0 <==> \old(reset->began_after) != 0 || reset->was_up != 0);
     ensures reached(timers, press(reset)) <==> \old(reached(timers, press(reset)));
     ensures reached(timers, long_press(reset)) <==> \old(reached(timers, long_press(reset)));
 */

@@ -35,6 +35,13 @@ static void frame(bool down) {
     step(0);
 }
 
+/* The first of the 363h is the release; after the third one the next press has a rising edge. */
+static void release(void) {
+    frame(false);
+    frame(false);
+    frame(false);
+}
+
 static void lose_vcu(void) {
     agv_reset_button_lose(&reset);
     lacking = AGV_MISSING_VCU_HEARTBEAT | AGV_MISSING_STATE | AGV_MISSING_TRIP_CAUSE | AGV_MISSING_STANDSTILL;
@@ -44,7 +51,7 @@ static void lose_vcu(void) {
 static void press(uint32_t ms) {
     frame(true);
     run(ms);
-    frame(false);
+    release();
 }
 
 static void expect_reset(void) {
@@ -74,7 +81,7 @@ void setUp(void) {
     resets = 0;
     missing = 0;
     agv_reset_button_trip(&reset, &timers);
-    frame(false);
+    release();
     run(2000);
 }
 
@@ -90,7 +97,7 @@ void test_a_press_of_1_s_to_5_s_resets_at_its_release(uint32_t ms, uint32_t expe
     frame(true);
     run(ms);
     expect_nothing();
-    frame(false);
+    release();
     TEST_ASSERT_EQUAL_UINT32(expected, resets);
     TEST_ASSERT_EQUAL_UINT32(0, in_vain);
     run(10000);
@@ -106,7 +113,7 @@ void test_a_press_of_more_than_5_s_is_in_vain(void) {
     run(1);
     expect_in_vain(AGV_MISSING_RELEASED);
     run(60000);
-    frame(false);
+    release();
     run(100);
     expect_in_vain(AGV_MISSING_RELEASED);
     in_vain = 0;
@@ -148,7 +155,7 @@ void test_a_release_between_begins_the_time_anew(void) {
 
 /* The press had no edge; the next one has. */
 static void expect_release_in_vain_then_reset(void) {
-    frame(false);
+    release();
     expect_in_vain(AGV_MISSING_BUTTON);
     in_vain = 0;
     run(10);
@@ -180,9 +187,10 @@ void test_a_press_in_standby_is_one_from_before_the_trip(void) {
 /* Shows: FSM-3 */
 void test_a_press_after_a_trip_from_standby_counts(void) {
     frame(true);
-    agv_reset_button_report(&reset, true, false, false);
+    for (uint32_t i = 0; i < 3; i++) {
+        agv_reset_button_report(&reset, true, false, false);
+    }
     agv_reset_button_trip(&reset, &timers);
-    run(1000);
     press(1000);
     expect_reset();
 }
@@ -195,6 +203,56 @@ void test_a_button_that_is_stuck_resets_nothing(void) {
     frame(true);
     run(6000);
     expect_in_vain(AGV_MISSING_BUTTON | AGV_MISSING_RELEASED);
+}
+
+/* One or two 363h without the bit end a press, but are not followed by a rising edge; three are. */
+/* Shows: FSM-3 */
+TEST_CASE(1, false)
+TEST_CASE(2, false)
+TEST_CASE(3, true)
+void test_a_glitch_of_a_button_that_is_stuck_is_no_rising_edge(uint32_t frames, bool resets_then) {
+    reset = (agv_reset_button_t){0};
+    frame(true);
+    run(3000);
+    for (uint32_t i = 0; i < frames; i++) {
+        frame(false);
+    }
+    expect_in_vain(AGV_MISSING_BUTTON);
+    in_vain = 0;
+    press(1500);
+    TEST_ASSERT_EQUAL_UINT32(resets_then ? 1 : 0, resets);
+    TEST_ASSERT_EQUAL_UINT32(resets_then ? 0 : 1, in_vain);
+}
+
+/* The same at the trip itself. */
+/* Shows: FSM-3 */
+void test_a_glitch_at_the_trip_is_no_rising_edge(void) {
+    frame(true);
+    frame(false);
+    agv_reset_button_trip(&reset, &timers);
+    press(1500);
+    expect_in_vain(AGV_MISSING_BUTTON);
+}
+
+/* Frames with the button up count only without a break: neither a loss nor a lost receiver is one. */
+/* Shows: FSM-3 */
+void test_a_loss_between_two_glitches_makes_no_rising_edge(void) {
+    reset = (agv_reset_button_t){0};
+    frame(false);
+    frame(false);
+    agv_reset_button_lose(&reset);
+    step(1);
+    frame(false);
+    press(1500);
+    expect_in_vain(AGV_MISSING_BUTTON);
+    in_vain = 0;
+    frame(false);
+    agv_reset_button_report(&reset, true, true, false);
+    step(0);
+    frame(false);
+    frame(false);
+    press(1500);
+    expect_in_vain(AGV_MISSING_BUTTON);
 }
 
 /* Frames of a VCU that is not alive cause neither an edge nor a release. */
@@ -210,7 +268,7 @@ void test_frames_of_a_vcu_that_is_not_alive_are_ignored(void) {
     agv_reset_button_report(&reset, false, false, false);
     run(500);
     expect_nothing();
-    frame(false);
+    release();
     expect_reset();
 }
 
@@ -233,7 +291,7 @@ void test_conditions_missing_at_any_time_in_the_last_second(uint32_t condition) 
     step(0); /* a frame is enough */
     lacking = 0;
     run(999);
-    frame(false);
+    release();
     expect_in_vain(condition);
     in_vain = 0;
     frame(true);
@@ -242,7 +300,7 @@ void test_conditions_missing_at_any_time_in_the_last_second(uint32_t condition) 
     step(0);
     lacking = 0;
     run(1000); /* a whole second ago */
-    frame(false);
+    release();
     expect_reset();
 }
 
@@ -252,7 +310,7 @@ void test_a_condition_missing_in_the_releasing_frame(void) {
     frame(true);
     run(3000);
     lacking = AGV_MISSING_MANUAL;
-    frame(false);
+    release();
     expect_in_vain(AGV_MISSING_MANUAL);
 }
 
@@ -268,7 +326,7 @@ void test_all_missing_conditions_are_reported(void) {
     run(499);
     lacking = 0;
     run(1);
-    frame(false);
+    release();
     expect_in_vain(AGV_MISSING_STANDSTILL | AGV_MISSING_THROTTLE | AGV_MISSING_STATE);
 }
 
@@ -277,7 +335,7 @@ void test_all_missing_conditions_are_reported(void) {
 void test_time_before_the_trip_does_not_count(void) {
     agv_reset_button_trip(&reset, &timers);
     lacking = AGV_MISSING_STATE;
-    frame(false);
+    release();
     run(1);
     lacking = 0;
     press(1000);
@@ -348,7 +406,7 @@ void test_a_press_that_the_loss_of_the_remote_ends(void) {
     frame_without_receiver(false);
     expect_in_vain(AGV_MISSING_BUTTON);
     run(10);
-    frame(false);
+    release();
     run(10);
     in_vain = 0;
     press(1000);
@@ -382,14 +440,14 @@ void test_a_press_that_begins_while_the_receiver_is_lost(void) {
     run(1500);
     frame_without_receiver(false);
     run(1);
-    frame(false);
+    release();
     run(1);
     TEST_ASSERT_EQUAL_UINT32(0, resets);
     frame_without_receiver(true);
     run(200);
     frame(true); /* no rising edge */
     run(1500);
-    frame(false);
+    release();
     run(1);
     expect_in_vain(AGV_MISSING_BUTTON);
 }
@@ -397,13 +455,13 @@ void test_a_press_that_begins_while_the_receiver_is_lost(void) {
 /* The operator lets go meanwhile. */
 /* Shows: FSM-3 */
 void test_a_press_during_which_the_receiver_is_lost(void) {
-    frame(false);
+    release();
     run(1);
     frame(true);
     run(100);
     frame_without_receiver(true);
     run(1500);
-    frame(false);
+    release();
     run(1);
     TEST_ASSERT_EQUAL_UINT32(0, resets);
     TEST_ASSERT_EQUAL_UINT32(0, in_vain);
@@ -426,12 +484,12 @@ void test_late_steps_count_with_all_their_time(void) {
     run(1000);
     lacking = 0;
     step(999);
-    frame(false);
+    release();
     TEST_ASSERT_EQUAL_UINT32(1, in_vain);
     frame(true);
     run(1);
     step(0xFFFFFFFFu);
     agv_timers_advance(&timers, &config, timers.now_ms + 1000, 0);
-    frame(false);
+    release();
     TEST_ASSERT_EQUAL_UINT32(1, resets);
 }

@@ -12,6 +12,7 @@ static agv_state_t state;
 static uint32_t now_ms;
 static uint8_t gear_sent;
 static bool gear_fresh;
+static bool angle_fresh;
 static bool autopilot;
 static bool standstill;
 static bool limited;
@@ -26,11 +27,13 @@ void setUp(void) {
     now_ms = 1000;
     gear_sent = 0;
     gear_fresh = true;
+    angle_fresh = true;
     autopilot = true;
     standstill = false;
     vehicle.wheels_fresh = true;
     vehicle.eps_in_angle_mode = true;
     vehicle.gear = 1;
+    vehicle.angle_raw = 9000;
 }
 
 /* Adapter to the module: all tests use these functions. */
@@ -41,6 +44,7 @@ static agv_gateway_facts_t facts(void) {
                                  .now_ms = now_ms,
                                  .gear_sent = gear_sent,
                                  .gear_fresh = gear_fresh,
+                                 .angle_fresh = angle_fresh,
                                  .autopilot = autopilot,
                                  .standstill = standstill};
 }
@@ -48,7 +52,7 @@ static agv_gateway_facts_t facts(void) {
 static bool passes(unsigned command, uint8_t first_byte) {
     const agv_gateway_facts_t now = facts();
     const uint8_t payload[8] = {first_byte};
-    return agv_gateway_passes(&now, command, payload);
+    return agv_gateway_passes(&gateway, &now, command, payload);
 }
 
 static bool may_wait(unsigned command) {
@@ -514,7 +518,6 @@ void test_slew_applies_to_the_limit_above_a_speed(void) {
     config.steering_slew_ddeg_s = 4000;
     config.steering_fast_max_ddeg = 100;
     config.fast_mm_s = 1000;
-    vehicle.angle_known = true;
     vehicle.angle_raw = 9000 + 400;
     TEST_ASSERT_EQUAL_INT(400, steer(0, 400));
     wheels(1001, 1001);
@@ -538,7 +541,6 @@ void test_without_a_slew_limit_steering_passes_as_it_is(void) {
 /* Shows: TOP-2 */
 void test_the_slew_limit_starts_from_the_measured_angle(void) {
     config.steering_slew_ddeg_s = 4000;
-    vehicle.angle_known = true;
     vehicle.angle_raw = 9000 - 200;
     TEST_ASSERT_EQUAL_INT(-100, steer(0, 500)); /* the first one may use one cycle */
     TEST_ASSERT_EQUAL_INT(0, steer(25, 500));
@@ -552,8 +554,6 @@ void test_the_slew_limit_starts_from_the_measured_angle(void) {
 /* Shows: TOP-2 */
 void test_the_slew_limit_starts_anew_until_the_eps_is_in_angle_control(void) {
     config.steering_slew_ddeg_s = 4000;
-    vehicle.angle_known = true;
-    vehicle.angle_raw = 9000;
     vehicle.eps_in_angle_mode = false;
     TEST_ASSERT_EQUAL_INT(0, steer(25, 0));
     vehicle.angle_raw = 9000 + 600;
@@ -565,10 +565,33 @@ void test_the_slew_limit_starts_anew_until_the_eps_is_in_angle_control(void) {
     TEST_ASSERT_EQUAL_INT(300, steer(25, 0));
 }
 
-void test_without_a_measured_angle_the_first_command_is_the_start(void) {
+/* A start at an angle of another time would turn the steering there. Only a slew limit has a start. */
+/* Shows: TOP-2 */
+void test_the_slew_limit_does_not_start_from_an_angle_that_is_out_of_date(void) {
+    angle_fresh = false;
+    TEST_ASSERT_TRUE(passes(AGV_MSG_STEERING_COMMAND, 0));
     config.steering_slew_ddeg_s = 4000;
-    TEST_ASSERT_EQUAL_INT(500, steer(0, 500));
-    TEST_ASSERT_EQUAL_INT(400, steer(25, 0));
+    TEST_ASSERT_FALSE(passes(AGV_MSG_STEERING_COMMAND, 0));
+    TEST_ASSERT_TRUE(passes(AGV_MSG_THROTTLE_COMMAND, 0));
+    TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 1));
+    TEST_ASSERT_TRUE(passes(AGV_MSG_TURN_SIGNAL_COMMAND, 0));
+    angle_fresh = true;
+    TEST_ASSERT_TRUE(passes(AGV_MSG_STEERING_COMMAND, 0));
+}
+
+/* Only until the EPS takes angles: from then on the commands go on from the last one. */
+/* Shows: TOP-2 */
+void test_a_slew_limit_that_has_started_needs_no_measured_angle(void) {
+    config.steering_slew_ddeg_s = 4000;
+    vehicle.eps_in_angle_mode = false;
+    (void)steer(25, 0);
+    angle_fresh = false;
+    TEST_ASSERT_FALSE(passes(AGV_MSG_STEERING_COMMAND, 0));
+    vehicle.eps_in_angle_mode = true;
+    TEST_ASSERT_TRUE(passes(AGV_MSG_STEERING_COMMAND, 0));
+    (void)steer(25, 0);
+    vehicle.eps_in_angle_mode = false;
+    TEST_ASSERT_TRUE(passes(AGV_MSG_STEERING_COMMAND, 0));
 }
 
 /* A longer pause counts as at most one second: 50.0 degrees. */
@@ -576,6 +599,7 @@ void test_without_a_measured_angle_the_first_command_is_the_start(void) {
 void test_a_pause_gives_at_most_a_second_of_slew(void) {
     config.steering_slew_ddeg_s = 500;
     now_ms = 0xFFFFFF00u;
+    vehicle.angle_raw = 0;
     TEST_ASSERT_EQUAL_INT(-9000, steer(0, -9000));
     TEST_ASSERT_EQUAL_INT(-8500, steer(1000, 9000));
     TEST_ASSERT_EQUAL_INT(-8000, steer(5000, 9000));
@@ -585,6 +609,7 @@ void test_a_pause_gives_at_most_a_second_of_slew(void) {
 /* Shows: TOP-2 */
 void test_a_second_of_slew_is_exact(void) {
     config.steering_slew_ddeg_s = 9000;
+    vehicle.angle_raw = 0;
     TEST_ASSERT_EQUAL_INT(-9000, steer(0, -9000));
     TEST_ASSERT_EQUAL_INT(-9, steer(999, 9000));
     TEST_ASSERT_EQUAL_INT(8991, steer(1000, 9000));
@@ -635,8 +660,6 @@ void test_time_does_not_add_up_while_the_command_is_followed(void) {
 /* Shows: TOP-2 */
 void test_after_a_restart_the_slew_limit_starts_from_the_measured_angle(void) {
     config.steering_slew_ddeg_s = 4000;
-    vehicle.angle_known = true;
-    vehicle.angle_raw = 9000;
     TEST_ASSERT_EQUAL_INT(100, steer(0, 500));
     vehicle.angle_raw = 9000 - 300;
     TEST_ASSERT_EQUAL_INT(200, steer(25, 500));
@@ -648,8 +671,6 @@ void test_after_a_restart_the_slew_limit_starts_from_the_measured_angle(void) {
 /* Shows: TOP-2, SUP-10 */
 void test_once_the_eps_has_taken_angles_its_mode_does_not_restart_the_slew_limit(void) {
     config.steering_slew_ddeg_s = 4000;
-    vehicle.angle_known = true;
-    vehicle.angle_raw = 9000;
     TEST_ASSERT_EQUAL_INT(100, steer(0, 500));
     TEST_ASSERT_EQUAL_INT(200, steer(25, 500));
     vehicle.eps_in_angle_mode = false;
