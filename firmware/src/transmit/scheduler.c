@@ -6,6 +6,9 @@ static const uint8_t first_ms[AGV_COMMAND_COUNT] = {[AGV_MSG_TURN_SIGNAL_COMMAND
                                                     [AGV_MSG_THROTTLE_COMMAND] = 33u,
                                                     [AGV_MSG_STEERING_COMMAND] = 25u};
 
+/* Longer than a frame at 125 kbit/s and its error frames. */
+#define SHIFT_MS 3u
+
 void agv_scheduler_restart(agv_scheduler_t *scheduler, uint32_t now_ms) {
     for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
         scheduler->slots[i].next_ms = now_ms + first_ms[i];
@@ -31,7 +34,7 @@ uint32_t agv_scheduler_due(agv_scheduler_t *scheduler, uint32_t now_ms, uint32_t
 }
 
 void agv_scheduler_shift(agv_scheduler_t *scheduler, uint32_t command) {
-    scheduler->slots[command].next_ms += AGV_SCHEDULER_SHIFT_MS;
+    scheduler->slots[command].next_ms += SHIFT_MS;
 }
 
 /* The bit is cleared when the gap is over, because the microseconds wrap: later differences would be wrong. */

@@ -41,10 +41,7 @@ void agv_scheduler_restart_slot(agv_scheduler_t *scheduler, uint32_t now_ms, uin
  */
 uint32_t agv_scheduler_due(agv_scheduler_t *scheduler, uint32_t now_ms, uint32_t command);
 
-/** In ms: longer than a frame at 125 kbit/s and its error frames. */
-#define AGV_SCHEDULER_SHIFT_MS 3u
-
-/** Delay all further slots of a command by AGV_SCHEDULER_SHIFT_MS, so that it does not collide with another sender of its identifier each time. */
+/** Delay all further slots of a command by 3 ms, so that it does not collide with another sender of its identifier each time. */
 void agv_scheduler_shift(agv_scheduler_t *scheduler, uint32_t command);
 
 /**

@@ -382,7 +382,6 @@ void agv_transmitter_status(agv_transmitter_t *transmitter, const agv_tx_orders_
     if (due) {
         transmitter->status_due_ms +=
             ((late_ms / config->status_frame_period_ms) + 1u) * config->status_frame_period_ms;
-        transmitter->status_due_ms += orders->passive ? AGV_SCHEDULER_SHIFT_MS : 0u;
     }
     (void)agv_timer_while(orders->timers, AGV_TIMER_TX_STATUS, has_to_wait);
 }
