@@ -75,6 +75,9 @@ typedef struct {
     bool both;
     bool heard;                            /**< the supervisor received the report of manual */
     uint64_t clear_ms;                     /**< since when bit 8 is clear */
+    bool engaged;                          /**< since a 363h with bit 8 alone, up to mode_frames in a row without it */
+    uint32_t clear_frames;                 /**< consecutive 363h with bit 8 clear */
+    uint64_t ended_ms;                     /**< end of the last engagement */
     uint64_t handback_ms;                  /**< when manual ended last */
     uint64_t manual_ms;                    /**< last 363h that reported manual */
     bool graced;                           /**< this engagement has its grace time: it is not one too many */
@@ -89,6 +92,8 @@ typedef struct {
     bool pressed;
     bool released; /**< after that */
     uint64_t press_ms;
+    uint32_t ups;   /**< 363h that report it as up, less those that do not */
+    bool is_glitch; /**< too few of them: what follows is no press */
 } hazard_button_t;
 
 /** The supervisor's own safe commands, as the wire shows them. */
@@ -154,6 +159,9 @@ typedef struct {
     uint32_t supply_frames; /**< 167h with a fault of its supply */
     uint32_t bad_frames;    /**< with another fault, or not in angle control */
     uint32_t alarm_frames;  /**< 363h with an alarm of the EPS */
+    uint32_t bad_angles;    /**< 067h with an invalid angle */
+    uint32_t good_angles;
+    bool is_angle_lost; /**< the supervisor must know that it is invalid */
 } hazard_eps_t;
 
 /** An evaluation. Read `kind`, `cause`, `at_ms` and `closeness`. */
@@ -272,6 +280,7 @@ void hazard_safe_tick(hazard_t *hazard);
 void hazard_safe_reported(hazard_t *hazard, const uint8_t data[AGV_DLC]);
 void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame);
 void hazard_hold_tick(hazard_t *hazard);
+bool hazard_hold_is_limited(const hazard_t *hazard, uint16_t value);
 void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg);
 void hazard_hold_trip(hazard_t *hazard);
 void hazard_hold_drop(hazard_t *hazard);

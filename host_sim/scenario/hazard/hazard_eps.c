@@ -1,4 +1,5 @@
 /* An EPS that takes no angles, as 067h, 167h and 363h show it: what it measured before is no angle to hold (H2). */
+#include "agv/codec.h"
 #include "scenario/hazard/hazard.h"
 
 enum {
@@ -16,6 +17,21 @@ static void count(uint32_t *frames, bool is_bad) {
     *frames = !is_bad ? 0u : (*frames < (uint32_t)FRAMES_MAX) ? *frames + 1u : *frames;
 }
 
+/** An angle that is invalid by its score is usable again after twice its frames. */
+static void count_angle(hazard_t *hazard, const uint8_t data[AGV_DLC]) {
+    hazard_eps_t *eps = &hazard->eps;
+    const uint32_t frames = hazard->config->status_invalid_frames;
+    const bool is_bad = !agv_value_is_valid(AGV_MSG_STEERING_STATUS, data);
+
+    count(&eps->bad_angles, is_bad);
+    count(&eps->good_angles, !is_bad);
+    if (eps->bad_angles >= frames + FRAMES_MORE) {
+        eps->is_angle_lost = true;
+    } else if (eps->good_angles + 1u >= 2u * frames) {
+        eps->is_angle_lost = false;
+    }
+}
+
 /** Count consecutive frames that say so. */
 void hazard_eps_status(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV_DLC]) {
     hazard_eps_t *eps = &hazard->eps;
@@ -28,6 +44,8 @@ void hazard_eps_status(hazard_t *hazard, agv_message_t message, const uint8_t da
               (data[MODE_BYTE] != (uint8_t)ANGLE_MODE) || ((data[FAULTS_BYTE] & (uint8_t)FAULT_BITS) != 0u));
     } else if (message == AGV_MSG_VEHICLE_STATUS) {
         count(&eps->alarm_frames, (data[ALARMS_BYTE] & (uint8_t)VCU_ALARMS) != 0u);
+    } else if (message == AGV_MSG_STEERING_STATUS) {
+        count_angle(hazard, data);
     } else {
         /* says nothing of it */
     }
@@ -45,10 +63,11 @@ static bool is_silent(const hazard_t *hazard, uint32_t margin_ms) {
 /** @param more_frames than debouncing needs */
 static bool takes_none(const hazard_t *hazard, uint32_t more_frames, uint32_t margin_ms) {
     const hazard_eps_t *eps = &hazard->eps;
+    const bool has_no_angle = (more_frames == 0u) ? (eps->bad_angles != 0u) : eps->is_angle_lost;
 
-    return hazard_is_hearing(hazard) &&
-           (is_silent(hazard, margin_ms) || (eps->bad_frames > more_frames) || (eps->alarm_frames > more_frames) ||
-            (eps->supply_frames >= hazard->config->eps_supply_fault_frames + more_frames));
+    return hazard_is_hearing(hazard) && (has_no_angle || is_silent(hazard, margin_ms) ||
+                                         (eps->bad_frames > more_frames) || (eps->alarm_frames > more_frames) ||
+                                         (eps->supply_frames >= hazard->config->eps_supply_fault_frames + more_frames));
 }
 
 /** The supervisor must know: two frames more than its debouncing needs, so that one may be lost. */

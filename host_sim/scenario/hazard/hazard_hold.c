@@ -65,6 +65,23 @@ static hazard_range_t range_now(const hazard_t *hazard, uint32_t within_ms) {
     return range;
 }
 
+/** A limit sends an angle between the steering, the last command, those of the AI computer, and the centre. */
+bool hazard_hold_is_limited(const hazard_t *hazard, uint16_t value) {
+    const hazard_recent_t *recent = &hazard->recent[AGV_MSG_STEERING_COMMAND];
+    hazard_range_t range = range_now(hazard, FRESH_MS);
+
+    extend_range(&range, 0);
+    if (hazard->is_commanded[AGV_MSG_STEERING_COMMAND]) {
+        extend_range(&range, (int32_t)hazard->commanded[AGV_MSG_STEERING_COMMAND] - CENTRE_DDEG);
+    }
+    for (uint32_t i = 0u; (i < (uint32_t)HAZARD_RECENT) && (i < recent->next); i++) {
+        if (hazard->t_ms - recent->at_ms[i] <= (uint64_t)hazard->config->steering_command_timeout_ms + FRESH_MS) {
+            extend_range(&range, (int32_t)recent->value[i] - CENTRE_DDEG);
+        }
+    }
+    return is_within(&range, (int32_t)value - CENTRE_DDEG);
+}
+
 static void trip_now(hazard_t *hazard, uint32_t within_ms) {
     hazard_hold_t *hold = &hazard->hold;
 

@@ -36,6 +36,7 @@ static bool is_motion(agv_message_t message, uint16_t value) {
 
 void hazard_passed(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
     const uint16_t value = value_of(message, frame);
+    const bool is_limited = hazard->limits_steering && hazard_hold_is_limited(hazard, value);
 
     if (!hazard_is_safe_now(hazard, SAFE_MS)) {
         hazard->passed[hazard->passed_at]++;
@@ -49,7 +50,7 @@ void hazard_passed(hazard_t *hazard, agv_message_t message, const hal_can_frame_
         hazard->throttle_ms = hazard->t_ms;
     }
     const bool is_hold = (message == AGV_MSG_STEERING_COMMAND) &&
-                         (hazard->trip.tripped || hazard_is_safe_now(hazard, SAFE_MS) || hazard->limits_steering);
+                         (hazard->trip.tripped || hazard_is_safe_now(hazard, SAFE_MS) || is_limited);
     if (is_motion(message, value) && !is_hold && !hazard_was_sent(hazard, message, value) && (hazard->false_ms == 0u)) {
         hazard->false_ms = hazard->t_ms; /* 065h of a hold leaves before the other safe commands */
         hazard->false_is_065h = message == AGV_MSG_STEERING_COMMAND;

@@ -298,11 +298,20 @@ static void add_up(hazard_t *hazard, unsigned r) {
     }
 }
 
-/** A reading that moves to the command and back may be progress, once in each engagement (SUP-10). */
+/** Time budgets of SUP-5, SUP-10 and SUP-11: each engagement begins them anew, so each has to fill within one. */
+static bool is_budget_of_engagement(const row_t *row) {
+    return row->engaged && (row->form == LEVEL) && (row->setting != NO_SETTING) && (row->holds != is_ai_side_dead);
+}
+
 void hazard_rows_engage(hazard_t *hazard) {
     for (unsigned r = 0u; r < (unsigned)ROW_COUNT; r++) {
+        int32_t *budget_ms = &hazard->budgets_ms[r];
         if (ROWS[r].holds == is_steering_stuck) {
-            hazard->budgets_ms[r] = 0;
+            *budget_ms = 0; /* a reading that moves to the command and back may be progress, once in each engagement */
+        } else if (is_budget_of_engagement(&ROWS[r]) && (*budget_ms > (int32_t)MARGIN_MS)) {
+            *budget_ms = (int32_t)MARGIN_MS;
+        } else {
+            /* goes on */
         }
     }
 }

@@ -6,6 +6,7 @@
 enum { SIGNALS_BYTES = 7, IN_FLIGHT_MS = 12, GONE_MS = 700, RESET_GONE_MS = 200, PENDING_MS = 50, PRESS_SEEN_MS = 100 };
 enum { CONFIRM_MARGIN_MS = 300, STALE_MARGIN_MS = 100 };
 enum { SPEED_SLOT_MS = 100, SLOWER_MM_S = 50, MOVING_MM_S = 300, MARGIN_MS = 1500 };
+enum { UPS_OF_RELEASE = 2, UPS_MAX = 3 };
 enum { ALARMS_BYTE = 4, FLAGS_BYTE = 6, PRESS_MARGIN_MS = 20 };
 
 static const uint8_t SAFE_SIGNALS[SIGNALS_BYTES] = {0x00, 0x00, 0x00, 0x00, 0x70, 0x00, 0x00};
@@ -85,7 +86,7 @@ static void check_confirmation(hazard_t *hazard) {
 }
 
 static void follow_button(hazard_t *hazard, hazard_button_t *button, bool down, uint32_t least_ms) {
-    if (down && !button->down) {
+    if (down && !button->down && !button->is_glitch) {
         button->pressed = true;
         button->press_ms = hazard->t_ms;
     }
@@ -95,7 +96,8 @@ static void follow_button(hazard_t *hazard, hazard_button_t *button, bool down, 
 }
 
 /**
- * Button 1 as 363h reports it: late, or as not pressed though the remote signal is lost. Where the alarms report that loss, nobody
+ * Button 1 as 363h reports it: late, or as not pressed though the remote signal is lost. A single 363h that reports a pressed
+ * button as up is a glitch: what follows is no press. Where the alarms report that loss, nobody
  * knows.
  */
 void hazard_safe_reported(hazard_t *hazard, const uint8_t data[AGV_DLC]) {
@@ -103,6 +105,13 @@ void hazard_safe_reported(hazard_t *hazard, const uint8_t data[AGV_DLC]) {
     const bool down = (data[FLAGS_BYTE] & AGV_VCU_FLAG_BUTTON_1) != 0u;
     const bool lost = (data[ALARMS_BYTE] & (AGV_VCU_ALARM_REMOTE_SIGNAL_LOST | AGV_VCU_ALARM_REMOTE_POWER_LOST)) != 0u;
 
+    if (!down) {
+        button->ups = (button->ups < (uint32_t)UPS_MAX) ? button->ups + 1u : button->ups;
+    }
+    button->is_glitch = button->ups < (uint32_t)UPS_OF_RELEASE;
+    if (down) {
+        button->ups -= (button->ups != 0u) ? 1u : 0u;
+    }
     if (down || !lost) {
         follow_button(hazard, button, down, hazard->config->reset_hold_ms - (uint32_t)PRESS_MARGIN_MS);
     } else {

@@ -121,6 +121,23 @@ static void begin_engagement(hazard_t *hazard) {
     }
 }
 
+/** Both bits neither begin an engagement nor end it. */
+static void follow_engagement(hazard_t *hazard, bool autopilot, bool alone) {
+    hazard_mode_t *mode = &hazard->mode;
+
+    if (alone && !mode->engaged) {
+        if ((mode->begun_count == 0u) || (hazard->t_ms - mode->ended_ms >= hazard->config->reengage_ms)) {
+            begin_engagement(hazard);
+        }
+        mode->engaged = true;
+    }
+    mode->clear_frames = autopilot ? 0u : mode->clear_frames + 1u;
+    if (mode->engaged && (mode->clear_frames >= hazard->config->mode_frames)) {
+        mode->engaged = false;
+        mode->ended_ms = hazard->t_ms;
+    }
+}
+
 static void note_mode(hazard_t *hazard, uint8_t bits) {
     hazard_mode_t *mode = &hazard->mode;
     const bool autopilot = (bits & AUTOPILOT_BIT) != 0;
@@ -130,10 +147,7 @@ static void note_mode(hazard_t *hazard, uint8_t bits) {
         check_newest_throttle(hazard);
         memset(hazard->is_commanded, 0, sizeof hazard->is_commanded);
     }
-    if (autopilot && !mode->autopilot &&
-        ((mode->begun_count == 0u) || (hazard->t_ms - mode->clear_ms >= hazard->config->reengage_ms))) {
-        begin_engagement(hazard);
-    }
+    follow_engagement(hazard, autopilot, autopilot && ((bits & MANUAL_BIT) == 0));
     if (!autopilot && mode->autopilot) {
         mode->clear_ms = hazard->t_ms;
     }

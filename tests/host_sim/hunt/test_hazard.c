@@ -27,6 +27,7 @@ typedef struct {
     unsigned passes;      /**< so many times each command of the AI computer */
     bool only_engaged;    /**< passes while the autopilot is engaged */
     uint32_t forges_ms;   /**< a throttle that nobody commanded */
+    int32_t forges_ddeg;  /**< not a throttle but this angle; 0: a throttle */
     const char *setting;  /**< NULL: none */
     uint32_t recovers_ms; /**< from bus-off */
     uint32_t parks_ms;    /**< P begins; NEVER: with the others */
@@ -129,7 +130,13 @@ static void act(void *ctx, uint64_t now_ms) {
         hal_can_recover(scenario_testbed_port(&testbed), HAL_CAN_VEHICLE);
     }
     if ((stub->forges_ms != NEVER) && (t_ms == stub->forges_ms)) {
-        send(AGV_MSG_THROTTLE_COMMAND, throttle);
+        const uint32_t raw = (uint32_t)(stub->forges_ddeg + 9000);
+        const uint8_t steering[AGV_DLC] = {(uint8_t)raw, (uint8_t)(raw >> 8)};
+        if (stub->forges_ddeg != 0) {
+            send(AGV_MSG_STEERING_COMMAND, steering);
+        } else {
+            send(AGV_MSG_THROTTLE_COMMAND, throttle);
+        }
     }
 }
 
@@ -280,6 +287,18 @@ static const stub_t PARKS = {.safe_ms = TRIP_MS, .parks_ms = TRIP_MS + 50, .sett
     "  - {at_ms: 2500, eps: set, field: angle, value: 2328h, frames: 44, again_every_ms: 480}\n"
 #define FULL_THROTTLE "  - {at_ms: 2000, vcu: set, field: throttle, value: FAh}\n"
 #define AI_RISES "  - {at_ms: 3000, ai: set, field: throttle, value: FAh, frames: 1, again_every_ms: 600}\n"
+#define NO_ENGAGEMENT                                                                                                  \
+    "  - {at_ms: 2122, vcu: set, field: mode_bits, value: 3h, again_every_ms: 192, again_until_ms: 4738}\n"            \
+    "  - {at_ms: 2132, vcu: set, field: mode_bits, value: 1h, again_every_ms: 192, again_until_ms: 4738}\n"            \
+    "  - {at_ms: 3000, eps: set, field: mode, value: FFh}\n"                                                           \
+    "  - {at_ms: 4739, vcu: unset, message: vehicle_status}\n"                                                         \
+    "  - {at_ms: 7800, eps: unset, message: eps_status}\n"
+#define GEAR_LIES "  - {at_ms: 1857, vcu: set, field: gear, value: 02h, frames: 19, again_every_ms: 550}\n"
+#define GLITCHES(frames)                                                                                               \
+    "  - {at_ms: 2000, operator: press, button: 1}\n"                                                                  \
+    "  - {at_ms: 4000, vcu: set_bytes, message: vehicle_status, bytes: \".. .. .. .. .. .. 40 ..\", frames: " frames   \
+    "}\n"                                                                                                              \
+    "  - {at_ms: 5500, vcu: set_bytes, message: vehicle_status, bytes: \".. .. .. .. .. .. 40 ..\", frames: 1}\n"
 #define AI_PARKS "  - {at_ms: 3000, ai: drive, gear: P, throttle_pct: 0}\n"
 
 /** Each: a supervisor that does nothing about it, and one that reacts; NULL: none. */
@@ -399,6 +418,24 @@ static const struct {
     {HAZARD_NONE, NULL, NULL, &RESETS_LATER, PRESS_LATE "  - {at_ms: 4000, operator: release, button: 1}\n"},
     {HAZARD_RESET, NOT_PRESSED, &RESETS_LATER, NULL, /* shorter than reset_hold_ms */
      PRESS_LATE "  - {at_ms: 3200, operator: release, button: 1}\n"},
+    /* a button that is held since before the trip, and missing in a single 363h, was not pressed after it */
+    {HAZARD_RESET, NOT_PRESSED, &RESETS_LATER, NULL, GLITCHES("1")},
+    {HAZARD_NONE, NULL, NULL, &RESETS_LATER, GLITCHES("3")},
+    /* a slew limit leaves angles between the steering and the command */
+    {HAZARD_FALSE_COMMAND, NOT_SENT,
+     &(const stub_t){.gateway = true,
+                     .passes = 1u,
+                     .only_engaged = true,
+                     .forges_ms = TRIP_MS,
+                     .forges_ddeg = 600,
+                     .setting = "steering_slew_ddeg_s: 100\n"},
+     &(const stub_t){.gateway = true,
+                     .passes = 1u,
+                     .only_engaged = true,
+                     .forges_ms = TRIP_MS,
+                     .forges_ddeg = 100,
+                     .setting = "steering_slew_ddeg_s: 100\n"},
+     ""},
     /* a node that reports what cannot be */
     {HAZARD_FALSE_NODE, "the EPS is not in angle control", &MUTE, &GOOD,
      "  - {at_ms: 3000, eps: set, field: mode, value: FFh}\n"},
@@ -446,6 +483,14 @@ static const struct {
     {HAZARD_FALSE_NODE, "more throttle than commanded", &MUTE, NULL,
      FULL_THROTTLE "  - {at_ms: 2400, operator: disengage, again_every_ms: 650}\n"
                    "  - {at_ms: 2560, operator: engage, again_every_ms: 650}\n"},
+    /* each begins its budgets anew */
+    {HAZARD_FALSE_NODE, "another gear than commanded", &MUTE, NULL, GEAR_LIES},
+    {HAZARD_NONE, NULL, NULL, &MUTE,
+     GEAR_LIES "  - {at_ms: 2102, operator: disengage, again_every_ms: 1901}\n"
+               "  - {at_ms: 2289, operator: engage, again_every_ms: 1901}\n"},
+    /* 363h with both mode bits begin no engagement */
+    {HAZARD_FALSE_NODE, "the EPS is not in angle control", &MUTE,
+     &(const stub_t){.setting = "engaged_grace_ms: 2000\n"}, NO_ENGAGEMENT},
     /* a dead transmitter shows with the next status frame */
     {HAZARD_FALSE_NODE, "the supervisor's transmitter has failed",
      &(const stub_t){.setting = "status_frame_period_ms: 3000\n"},
@@ -543,7 +588,9 @@ void test_h2_an_eps_that_takes_no_angle_drops_the_angle_of_the_trip(void) {
         {"vcu: set, field: alarms, value: 10h, frames: 20", true},
         {"eps: mute, message: eps_status, frames: 20", true},
         {"eps: mute, message: steering_status, frames: 20", true},
+        {"eps: set, field: angle, value: FFFFh, frames: 20", true},
         {"eps: set, field: faults, value: 02h, frames: 2", false},
+        {"eps: set, field: angle, value: FFFFh, frames: 4", false},
     };
     const stub_t returns = {
         .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 500, .holds = true, .hold_ms = TRIP_MS + 400, .hold_ddeg = 0};
@@ -566,6 +613,7 @@ void test_h2_an_angle_that_was_perhaps_dropped_may_be_taken_anew(void) {
     } rows[] = {{"eps: set, field: mode, value: 01h, frames: 4", false},
                 {"eps: set, field: faults, value: 02h, frames: 4", true},
                 {"eps: set, field: faults, value: 08h, frames: 1", true},
+                {"eps: set, field: angle, value: FFFFh, frames: 3", true},
                 {"vcu: set, field: alarms, value: 10h, frames: 1", true},
                 {"eps: mute, message: eps_status, frames: 7", true}};
     const stub_t later = {
