@@ -24,6 +24,25 @@ void test_the_slew_rate_starts_anew_with_every_engagement(void) {
     expect_steering(9000, 9275);
 }
 
+/* In manual 067h has no valid angle, and the last one is of another time: no 065h passes before there is a new one. */
+/* Shows: TOP-2 */
+void test_the_slew_rate_starts_from_no_angle_that_is_out_of_date(void) {
+    static const uint8_t centre[8] = {0x28, 0x23};
+    f.config.steering_slew_ddeg_s = 1000;
+    fixture_angle(&f, 9600);
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_angle(&f, 18001);
+    expect_state_after(&f, 100, AGV_STATE_STANDBY);
+    walk_engage(&f);
+    expect_dropped(0x065, centre);
+    fixture_angle(&f, 9010);
+    fixture_run_past(&f, AGV_MSG_STEERING_STATUS);
+    expect_pass(0x065, centre, centre);
+    expect_state(&f, AGV_STATE_ACTIVE);
+}
+
 /* ---- Changes of the gear ---- */
 
 static const uint8_t REVERSE[8] = {2};
@@ -80,11 +99,12 @@ void test_while_a_gear_waits_the_throttle_that_passes_is_0(void) {
     expect_pass(0x075, commanded, commanded);
 }
 
-/* D was sent in the engagement before, which does not count: the vehicle reverses now. Throttle 0 passes. */
-/* Shows: TOP-2 */
-void test_a_gear_of_the_engagement_before_was_not_sent_in_this_one(void) {
+/* D was sent before manual, which does not count: the vehicle reverses now. Throttle 0 passes. */
+static void expect_no_throttle_after_manual(uint16_t reengage_ms) {
     static const uint8_t commanded[8] = {75};
     static const uint8_t nothing[8] = {0};
+    setUp();
+    f.config.reengage_ms = reengage_ms;
     f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = GEAR_D;
     fixture_active(&f);
     fixture_run(&f, 200);
@@ -92,12 +112,19 @@ void test_a_gear_of_the_engagement_before_was_not_sent_in_this_one(void) {
     expect_state_after(&f, 50, AGV_STATE_STANDBY);
     fixture_gear(&f, GEAR_R);
     fixture_drive(&f, -500);
-    fixture_run(&f, 1000);
+    fixture_run(&f, 500);
     walk_engage(&f);
     fixture_run(&f, 150);
     f.traffic[AGV_MSG_THROTTLE_COMMAND].muted = true;
     fixture_run(&f, 100);
     expect_pass(0x075, commanded, nothing);
+}
+
+/* Also where the second engagement continues the first one. */
+/* Shows: TOP-2 */
+void test_a_gear_of_before_manual_was_not_sent_in_this_engagement(void) {
+    expect_no_throttle_after_manual(100);
+    expect_no_throttle_after_manual(1000);
 }
 
 /* Only a warning here: R was sent at standstill, 0A3h still says D. In motion D is another gear. */

@@ -62,6 +62,55 @@ void test_waiting_commands_are_dropped_at_a_trip_in_manual(void) {
     TEST_ASSERT_EQUAL_HEX8(0x70, fixture_nth_sent(&f, 0x43F, 0)->data[4]);
 }
 
+/* R came at standstill; before it can be sent, the vehicle moves in D. The throttle that passes is then 0. */
+/* Shows: TOP-2 */
+void test_a_gear_that_waits_is_dropped_when_the_vehicle_moves(void) {
+    static const uint8_t reverse[8] = {2};
+    fixture_active(&f);
+    fixture_gear(&f, GEAR_D);
+    pause_ai();
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    from_ai(0x168, reverse);
+    const uint32_t before = dropped();
+    fixture_drive(&f, 500);
+    fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
+    TEST_ASSERT_EQUAL_UINT32(before + 1, dropped());
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    expect_count_after(&f, 10, 0x168, 0);
+    expect_pass(0x075, THROTTLE, ZERO);
+    expect_state(&f, AGV_STATE_ACTIVE);
+}
+
+/* A 075h that waits in manual is dropped at the engagement; the throttle 0 of the end of the last one is not. */
+/* Shows: TOP-2 */
+void test_the_throttle_0_of_the_end_outlasts_a_throttle_that_waits(void) {
+    f.config.gateway_in_manual = AGV_IN_MANUAL_ALL;
+    fixture_active(&f);
+    pause_ai();
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    disengage();
+    from_ai(0x075, THROTTLE);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    fixture_jump(&f, 1);
+    expect_sent_once(0x075, ZERO);
+}
+
+/* One that leaves makes it superfluous. */
+/* Shows: TOP-2 */
+void test_the_throttle_0_of_the_end_is_not_sent_after_another_one(void) {
+    f.config.gateway_in_manual = AGV_IN_MANUAL_ALL;
+    fixture_active(&f);
+    pause_ai();
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    disengage();
+    from_ai(0x075, THROTTLE);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    expect_count_after(&f, 60, 0x075, 1);
+}
+
 /* ---- At most one frame in half a cycle ---- */
 
 typedef struct {
