@@ -54,7 +54,8 @@ static const struct {
 static bool allows(bool gateway, agv_state_t state, unsigned row) {
     static const hal_can_frame_t AUTOPILOT = {.id = 0x363, .length = 8, .data = {[6] = 0x80}};
     static const hal_can_frame_t ANGLE = {.id = 0x067, .length = 8, .data = {[2] = 0x28, 0x23}};
-    oracle_t oracle = {.gateway = gateway, .signal_id = 0x43F, .vehicle_id = 0x363, .hold_age_ms = 50};
+    oracle_t oracle = {
+        .gateway = gateway, .signal_id = 0x43F, .vehicle_id = 0x363, .hold_age_ms = 50, .angle_frames = 3};
     oracle_restart(&oracle);
     oracle_heard(&oracle, HAL_CAN_VEHICLE, &AUTOPILOT);
     oracle_heard(&oracle, HAL_CAN_VEHICLE, &ANGLE);
