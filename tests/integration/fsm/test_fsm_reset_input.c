@@ -61,6 +61,21 @@ void test_with_both_either_button_resets(void) {
     walk_reset(&f, 1000);
 }
 
+/* The remote button was up when the push button reset. A press from before the next trip resets nothing all the same. */
+/* Shows: FSM-3, HW-3 */
+void test_a_press_of_the_remote_button_after_a_reset_by_the_push_button(void) {
+    choose(AGV_RESET_INPUT_BOTH);
+    push_for(1000);
+    expect_state(&f, AGV_STATE_STANDBY);
+    walk_button(&f, true);
+    fixture_run(&f, 50);
+    walk_trip(&f);
+    expect_state_after(&f, 1500, AGV_STATE_SAFE);
+    walk_button(&f, false);
+    expect_refusals(1, AGV_MISSING_BUTTON);
+    expect_state(&f, AGV_STATE_SAFE);
+}
+
 /* A press in vain is reported with what was missing, also while the other button is not touched. */
 /* Shows: HW-3, FSM-3 */
 void test_a_press_of_the_push_button_in_vain_is_reported(void) {

@@ -243,6 +243,7 @@ void test_a_loss_between_two_glitches_makes_no_rising_edge(void) {
     agv_reset_button_lose(&reset);
     step(1);
     frame(false);
+    frame(false);
     press(1500);
     expect_in_vain(AGV_MISSING_BUTTON);
     in_vain = 0;

@@ -675,8 +675,9 @@ void test_once_the_eps_has_taken_angles_its_mode_does_not_restart_the_slew_limit
     TEST_ASSERT_EQUAL_INT(200, steer(25, 500));
     vehicle.eps_in_angle_mode = false;
     TEST_ASSERT_EQUAL_INT(300, steer(25, 500));
-    vehicle.eps_in_angle_mode = true;
     TEST_ASSERT_EQUAL_INT(400, steer(25, 500));
+    vehicle.eps_in_angle_mode = true;
+    TEST_ASSERT_EQUAL_INT(500, steer(25, 500));
     agv_gateway_restart(&gateway); /* the next engagement begins before the EPS takes angles */
     vehicle.eps_in_angle_mode = false;
     TEST_ASSERT_EQUAL_INT(100, steer(25, 500));
