@@ -29,7 +29,7 @@
   logic integer long_press{L}(agv_reset_button_t *r) = r->is_pin != 0 ? AGV_TIMER_PIN_PRESS_LONG : AGV_TIMER_PRESS_LONG;
 
   // ---- A button that is up, and was so in three 363h in a row; the debounced pin counts at once.
-  predicate is_up{L}(agv_reset_button_t *r) = r->button == 2 && r->up_frames == 3;
+  predicate surely_up{L}(agv_reset_button_t *r) = r->button == 2 && r->up_frames == 3;
 
   predicate reset_ready{L}(agv_reset_button_t *r, agv_timers_t *t, agv_config_t *c) =
       \valid(r) && \valid(t) && \valid_read(c) && \separated(r, t, c) && r->button <= 3;
@@ -60,7 +60,7 @@ void agv_reset_button_lose(agv_reset_button_t *reset);
     requires \valid(reset) && \valid(timers) && \separated(reset, timers);
     assigns reset->began_after, reset->answered, reset->was_up, reset->held_ms[0 .. 8];
     assigns timers->phase[press(reset)], timers->phase[long_press(reset)];
-    ensures reset->began_after == 0 && (reset->was_up != 0 <==> is_up(reset));
+    ensures reset->began_after == 0 && (reset->was_up != 0 <==> surely_up(reset));
     ensures timers->phase[press(reset)] == 0 && timers->phase[long_press(reset)] == 0;
     ensures \forall integer i; 0 <= i < 9 ==> reset->held_ms[i] == 0;
 */
@@ -74,7 +74,7 @@ void agv_reset_button_trip(agv_reset_button_t *reset, agv_timers_t *timers);
     assigns reset->held_ms[0 .. 8], reset->was_up, reset->began_after, reset->answered, *missing, timers->due_ms;
     assigns timers->since_ms[press(reset)], timers->since_ms[long_press(reset)];
     assigns timers->phase[press(reset)], timers->phase[long_press(reset)];
-    ensures held_in_range(reset, config) && (reset->was_up != 0 <==> is_up(reset));
+    ensures held_in_range(reset, config) && (reset->was_up != 0 <==> surely_up(reset));
     ensures \result == AGV_PRESS_RESETS <==>
                 reset->button == 2 && \old(reset->began_after) != 0 && \old(reset->answered) == 0 &&
                 \old(reached(timers, press(reset))) && !\old(reached(timers, long_press(reset))) &&

@@ -28,6 +28,12 @@ static void forget_press(agv_reset_button_t *reset, agv_timers_t *timers);
 */
 static uint32_t missing_lately(const agv_reset_button_t *reset, const agv_config_t *config);
 
+/*@ requires \valid_read(reset);
+    assigns \nothing;
+    ensures \result != 0 <==> surely_up(reset);
+*/
+static bool is_up(const agv_reset_button_t *reset);
+
 /*@ requires \valid(reset) && \valid_read(config) && \separated(reset, config) && held_in_range(reset, config);
     assigns reset->held_ms[0 .. 8];
     ensures held_in_range(reset, config);
