@@ -81,15 +81,20 @@ void test_a_gear_that_waits_is_dropped_when_the_vehicle_moves(void) {
     expect_state(&f, AGV_STATE_ACTIVE);
 }
 
-/* A 075h that waits in manual is dropped at the engagement; the throttle 0 of the end of the last one is not. */
-/* Shows: TOP-2 */
-void test_the_throttle_0_of_the_end_outlasts_a_throttle_that_waits(void) {
+/* The queue is full at the end of an engagement, and in manual a 075h waits beside the throttle 0. */
+static void throttle_waits_in_manual(void) {
     f.config.gateway_in_manual = AGV_IN_MANUAL_ALL;
     fixture_active(&f);
     pause_ai();
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
     disengage();
     from_ai(0x075, THROTTLE);
+}
+
+/* A 075h that waits in manual is dropped at the engagement; the throttle 0 of the end of the last one is not. */
+/* Shows: TOP-2 */
+void test_the_throttle_0_of_the_end_outlasts_a_throttle_that_waits(void) {
+    throttle_waits_in_manual();
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     expect_state(&f, AGV_STATE_ACTIVE);
@@ -98,15 +103,10 @@ void test_the_throttle_0_of_the_end_outlasts_a_throttle_that_waits(void) {
     expect_sent_once(0x075, ZERO);
 }
 
-/* One that leaves makes it superfluous. */
+/* A later 075h that leaves takes its place. */
 /* Shows: TOP-2 */
 void test_the_throttle_0_of_the_end_is_not_sent_after_another_one(void) {
-    f.config.gateway_in_manual = AGV_IN_MANUAL_ALL;
-    fixture_active(&f);
-    pause_ai();
-    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
-    disengage();
-    from_ai(0x075, THROTTLE);
+    throttle_waits_in_manual();
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
     expect_count_after(&f, 60, 0x075, 1);
 }

@@ -1,18 +1,11 @@
-/*
- * A port that accepts everything, and keeps the last sent frame of one identifier.
- */
+/* A port that accepts everything and keeps nothing: that of hal/template accepts no frame. */
 #ifndef NULL_HAL_H
 #define NULL_HAL_H
-
-#include <stdbool.h>
-#include <stdint.h>
 
 #include "hal/can.h"
 
 struct hal {
-    uint32_t kept_id; /* sent to the vehicle */
-    bool is_kept;
-    hal_can_frame_t kept;
+    char nothing; /* a struct has a member */
 };
 
 #endif
