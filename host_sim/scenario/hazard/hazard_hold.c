@@ -65,7 +65,7 @@ static hazard_range_t range_now(const hazard_t *hazard, uint32_t within_ms) {
     return range;
 }
 
-/** A limit sends an angle between the steering, the last command, those of the AI computer, and the centre. */
+/** Limits give an angle between the real steering angle, the last command, the commands of the AI computer, and the centre. */
 bool hazard_hold_is_limited(const hazard_t *hazard, uint16_t value) {
     const hazard_recent_t *recent = &hazard->recent[AGV_MSG_STEERING_COMMAND];
     hazard_range_t range = range_now(hazard, FRESH_MS);
