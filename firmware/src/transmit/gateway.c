@@ -44,14 +44,9 @@ void agv_gateway_follow_gear(agv_gateway_t *gateway, const agv_gateway_facts_t *
     gateway->gear_waits = changes_gear_in_motion(facts, data[0]) && (data[0] != facts->gear_sent);
 }
 
-/* The slew limit starts at the measured angle, and does so again until the EPS takes angles. */
-static bool starts_slew(const agv_gateway_t *gateway, const agv_gateway_facts_t *facts) {
-    return !gateway->steering_known || (!gateway->steering_taken && !facts->vehicle->eps_in_angle_mode);
-}
-
 /* A slew limit does not start at an angle that is out of date: the command would turn the steering there. */
 static bool lacks_angle(const agv_gateway_t *gateway, const agv_gateway_facts_t *facts) {
-    return (facts->config->steering_slew_ddeg_s != 0u) && starts_slew(gateway, facts) && !facts->angle_fresh;
+    return (facts->config->steering_slew_ddeg_s != 0u) && !gateway->steering_known && !facts->angle_fresh;
 }
 
 bool agv_gateway_passes(const agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t command,
@@ -126,16 +121,15 @@ static uint32_t limit_to_speed(const agv_gateway_facts_t *facts, uint32_t wanted
 }
 
 /*
- * The limit starts one cycle ago. What an EPS says later does not start it again: with one that is stuck, the commands would
- * never leave the measured angle (SUP-10).
+ * The limit starts one cycle ago, and again with each 065h until the EPS is in angle control. While driving is judged it goes on
+ * whatever the EPS reports: with a stuck EPS, the commands would never leave the measured angle (SUP-10).
  */
 static void begin_slew(agv_gateway_t *gateway, const agv_gateway_facts_t *facts) {
-    if (starts_slew(gateway, facts)) {
-        gateway->steering_known = true;
+    if (!gateway->steering_known) {
         reach(&gateway->steering, facts->vehicle->angle_raw,
               facts->now_ms - agv_message_cycle_ms(AGV_MSG_STEERING_COMMAND));
     }
-    gateway->steering_taken = gateway->steering_taken || facts->vehicle->eps_in_angle_mode;
+    gateway->steering_known = facts->vehicle->eps_in_angle_mode || facts->judged;
 }
 
 /* Raw angles: a step is a tenth of a degree. */

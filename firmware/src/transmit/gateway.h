@@ -24,8 +24,7 @@ typedef struct {
 typedef struct {
     agv_gateway_rate_t steering;
     agv_gateway_rate_t throttle;
-    bool steering_known; /**< steering is valid */
-    bool steering_taken; /**< since the restart the EPS was in angle control */
+    bool steering_known; /**< steering is valid: the slew limit goes on from it */
     bool throttle_known; /**< throttle is valid */
     bool gear_waits;     /**< the last 168h is dropped until standstill: throttle 0 until then */
 } agv_gateway_t;
@@ -36,11 +35,12 @@ typedef struct {
     const agv_vehicle_t *vehicle;
     agv_state_t state;
     uint32_t now_ms;
-    uint8_t gear_sent; /**< gear of the last 168h that was sent in this engagement; 0: none */
+    uint8_t gear_sent; /**< gear of the last 168h that was sent in this engagement; 0: none, or not ACTIVE */
     bool gear_fresh;   /**< 0A3h is fresh */
     bool angle_fresh;  /**< the last valid 067h is at most hold_age_ms old */
     bool autopilot;    /**< the last 363h reports autopilot */
     bool standstill;
+    bool judged; /**< driving is judged (Words) */
 } agv_gateway_facts_t;
 
 /**

@@ -185,6 +185,7 @@ typedef struct {
     hazard_recent_t recent[AGV_COMMAND_COUNT];
     uint16_t commanded[AGV_COMMAND_COUNT]; /**< the last value commanded to the vehicle */
     bool is_commanded[AGV_COMMAND_COUNT];  /**< in this engagement */
+    uint32_t untaken;                      /**< consecutive 065h of the supervisor that found no EPS in angle control */
     uint16_t throttle_high;                /**< 050h: the value from which it has to come down */
     uint64_t throttle_high_ms;
     uint16_t
@@ -286,6 +287,9 @@ void hazard_hold_trip(hazard_t *hazard);
 void hazard_hold_drop(hazard_t *hazard);
 void hazard_eps_status(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV_DLC]);
 bool hazard_eps_takes_no_angle(const hazard_t *hazard);
+
+/** Whether the last 167h reports angle control. */
+bool hazard_eps_in_angle_control(const hazard_t *hazard);
 bool hazard_eps_perhaps_takes_none(const hazard_t *hazard);
 void hazard_speed_tick(hazard_t *hazard);
 bool hazard_is_said_to_stand(const hazard_t *hazard);

@@ -79,3 +79,7 @@ bool hazard_eps_takes_no_angle(const hazard_t *hazard) {
 bool hazard_eps_perhaps_takes_none(const hazard_t *hazard) {
     return takes_none(hazard, 0u, 0u);
 }
+
+bool hazard_eps_in_angle_control(const hazard_t *hazard) {
+    return hazard->messages[AGV_MSG_EPS_STATUS].data[MODE_BYTE] == (uint8_t)ANGLE_MODE;
+}

@@ -4,7 +4,7 @@
 #include "scenario/hazard/hazard.h"
 
 enum { NEW_HOLD_MS = 300, FRESH_MS = 150, IN_FLIGHT_MS = 20, TOLERANCE_DDEG = 50, CENTRE_DDEG = 9000 };
-enum { OUT_OF_DATE_MS = 2000 };
+enum { OUT_OF_DATE_MS = 2000, UNTAKEN_MAX = 2 };
 
 static bool is_near(int32_t a_ddeg, int32_t b_ddeg) {
     return abs(a_ddeg - b_ddeg) <= TOLERANCE_DDEG;
@@ -65,13 +65,25 @@ static hazard_range_t range_now(const hazard_t *hazard, uint32_t within_ms) {
     return range;
 }
 
+/**
+ * The last 065h is no start for a slew limit when it and the one before came in the grace time while the EPS followed no angle:
+ * the operator may have steered since.
+ */
+static bool continues(const hazard_t *hazard) {
+    return hazard->is_commanded[AGV_MSG_STEERING_COMMAND] &&
+           ((hazard->untaken < UNTAKEN_MAX) || !hazard_eps_in_angle_control(hazard) || !hazard->mode.graced ||
+            (hazard->t_ms - hazard->mode.engaged_ms >= hazard->config->engaged_grace_ms));
+}
+
 /** Limits give an angle between the real steering angle, the last command, the commands of the AI computer, and the centre. */
 bool hazard_hold_is_limited(const hazard_t *hazard, uint16_t value) {
     const hazard_recent_t *recent = &hazard->recent[AGV_MSG_STEERING_COMMAND];
     hazard_range_t range = range_now(hazard, FRESH_MS);
 
-    extend_range(&range, 0);
-    if (hazard->is_commanded[AGV_MSG_STEERING_COMMAND]) {
+    if (hazard->config->steering_fast_max_ddeg != 0u) {
+        extend_range(&range, 0);
+    }
+    if (continues(hazard)) {
         extend_range(&range, (int32_t)hazard->commanded[AGV_MSG_STEERING_COMMAND] - CENTRE_DDEG);
     }
     for (uint32_t i = 0u; (i < (uint32_t)HAZARD_RECENT) && (i < recent->next); i++) {

@@ -45,6 +45,9 @@ void hazard_passed(hazard_t *hazard, agv_message_t message, const hal_can_frame_
         return;
     }
     hazard_commanded(hazard, message, value);
+    if (message == AGV_MSG_STEERING_COMMAND) {
+        hazard->untaken = hazard_eps_in_angle_control(hazard) ? 0u : hazard->untaken + 1u;
+    }
     if (message == AGV_MSG_THROTTLE_COMMAND) {
         hazard->throttle_is_newest = value != 0u;
         hazard->throttle_ms = hazard->t_ms;

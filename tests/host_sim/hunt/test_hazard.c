@@ -28,6 +28,7 @@ typedef struct {
     bool only_engaged;    /**< passes while the autopilot is engaged */
     uint32_t forges_ms;   /**< a throttle that nobody commanded */
     int32_t forges_ddeg;  /**< not a throttle but this angle; 0: a throttle */
+    int32_t steers_ddeg;  /**< 065h is passed with this angle; 0: as it is */
     const char *setting;  /**< NULL: none */
     uint32_t recovers_ms; /**< from bus-off */
     uint32_t parks_ms;    /**< P begins; NEVER: with the others */
@@ -67,6 +68,15 @@ static void enqueue(hal_can_side_t side, const hal_can_frame_t *frame) {
     }
 }
 
+/** A stub with a slew limit that stays at one angle. */
+static void steer_as_the_stub(hal_can_frame_t *frame) {
+    const uint32_t raw = (uint32_t)(stub->steers_ddeg + 9000);
+    if ((stub->steers_ddeg != 0) && (frame->id == 0x065u)) {
+        frame->data[0] = (uint8_t)raw;
+        frame->data[1] = (uint8_t)(raw >> 8);
+    }
+}
+
 /** What the stub gateway passes on: commands of the AI computer, and the mode. */
 static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
     const bool engaged = vehicle_now().autopilot || !stub->only_engaged;
@@ -76,6 +86,7 @@ static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, co
     if ((side == HAL_CAN_AI) && (from != SCENARIO_FROM_SUPERVISOR) && engaged) {
         for (unsigned i = 0u; i < stub->passes; i++) {
             enqueue(HAL_CAN_VEHICLE, frame);
+            steer_as_the_stub(&queue[queued - 1u]);
         }
     }
     if (stub->gateway && (side == HAL_CAN_VEHICLE) && (from == (int)VEHICLE_VCU)) {
@@ -433,9 +444,22 @@ static const struct {
                      .passes = 1u,
                      .only_engaged = true,
                      .forges_ms = TRIP_MS,
-                     .forges_ddeg = 100,
+                     .forges_ddeg = 160,
                      .setting = "steering_slew_ddeg_s: 100\n"},
      ""},
+    /* a slew limit that goes on from before the hand-over, although the operator steered until the EPS followed */
+    {HAZARD_FALSE_COMMAND, NOT_SENT,
+     &(const stub_t){.gateway = true,
+                     .passes = 1u,
+                     .only_engaged = true,
+                     .steers_ddeg = 20,
+                     .setting = "steering_slew_ddeg_s: 100\n"},
+     &(const stub_t){.gateway = true, .passes = 1u, .only_engaged = true, .setting = "steering_slew_ddeg_s: 100\n"},
+     "  - {at_ms: 1600, operator: disengage}\n"
+     "  - {at_ms: 1700, ai: drive, gear: D, throttle_pct: 60, steer_deg: 60}\n"
+     "  - {at_ms: 1700, ai: be_stubborn}\n"
+     "  - {at_ms: 2000, operator: engage}\n"
+     "  - {at_ms: 2005, operator: steer, steer_deg: 60}\n"},
     /* a node that reports what cannot be */
     {HAZARD_FALSE_NODE, "the EPS is not in angle control", &MUTE, &GOOD,
      "  - {at_ms: 3000, eps: set, field: mode, value: FFh}\n"},

@@ -145,6 +145,22 @@ void test_a_silent_gear_status_is_not_the_gear(void) {
     expect_state(&f, AGV_STATE_ACTIVE);
 }
 
+/* P was sent at standstill in manual. Then the operator drives off, and 0A3h still says P. */
+/* Shows: TOP-2, FSM-1 */
+void test_p_that_was_sent_in_manual_does_not_pass_in_motion(void) {
+    static const uint8_t park[8] = {8};
+    f.config.gateway_in_manual = AGV_IN_MANUAL_ALL;
+    f.config.park = AGV_PARK_AT_STANDSTILL;
+    fixture_gear(&f, GEAR_P);
+    f.traffic[AGV_MSG_GEAR_COMMAND].muted = true;
+    fixture_standby(&f);
+    fixture_run(&f, 200);
+    expect_pass(0x168, park, park);
+    fixture_drive(&f, 500);
+    fixture_run(&f, 200);
+    expect_dropped(0x168, park);
+}
+
 /* ---- Withheld commands ---- */
 
 /* Each time, one 363h reports manual before the message, and one reports autopilot after it. */

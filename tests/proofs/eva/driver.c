@@ -176,7 +176,6 @@ static void sound_observations(agv_core_t *core) {
     core->vehicle.wheels_doubted = any_bool();
     core->commands.autopilot_off = any_bool();
     core->gateway.steering_known = any_bool();
-    core->gateway.steering_taken = any_bool();
     core->gateway.throttle_known = any_bool();
     core->gateway.gear_waits = any_bool();
     core->motion_checks.reported = any_bool();

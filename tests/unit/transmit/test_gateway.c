@@ -15,6 +15,7 @@ static bool gear_fresh;
 static bool angle_fresh;
 static bool autopilot;
 static bool standstill;
+static bool judged;
 static bool limited;
 static uint8_t data[8];
 
@@ -30,6 +31,7 @@ void setUp(void) {
     angle_fresh = true;
     autopilot = true;
     standstill = false;
+    judged = false;
     vehicle.wheels_fresh = true;
     vehicle.eps_in_angle_mode = true;
     vehicle.gear = 1;
@@ -46,7 +48,8 @@ static agv_gateway_facts_t facts(void) {
                                  .gear_fresh = gear_fresh,
                                  .angle_fresh = angle_fresh,
                                  .autopilot = autopilot,
-                                 .standstill = standstill};
+                                 .standstill = standstill,
+                                 .judged = judged};
 }
 
 static bool passes(unsigned command, uint8_t first_byte) {
@@ -560,9 +563,22 @@ void test_the_slew_limit_starts_anew_until_the_eps_is_in_angle_control(void) {
     TEST_ASSERT_EQUAL_INT(500, steer(25, 0));
     TEST_ASSERT_EQUAL_INT(500, steer(1000, 0));
     vehicle.eps_in_angle_mode = true;
-    TEST_ASSERT_EQUAL_INT(400, steer(25, 0));
+    TEST_ASSERT_EQUAL_INT(500, steer(25, 0)); /* the operator may have steered until now */
     vehicle.angle_raw = 9000 + 900;
-    TEST_ASSERT_EQUAL_INT(300, steer(25, 0));
+    TEST_ASSERT_EQUAL_INT(400, steer(25, 0));
+}
+
+/* 167h still reports angle control at the first 065h; then the EPS assists, and the operator steers. */
+/* Shows: TOP-2 */
+void test_the_slew_limit_starts_anew_when_the_eps_leaves_angle_control_again(void) {
+    config.steering_slew_ddeg_s = 4000;
+    TEST_ASSERT_EQUAL_INT(0, steer(25, 0));
+    vehicle.eps_in_angle_mode = false;
+    vehicle.angle_raw = 9000 + 600;
+    TEST_ASSERT_EQUAL_INT(100, steer(25, 600)); /* the EPS follows no angle now */
+    TEST_ASSERT_EQUAL_INT(600, steer(25, 600));
+    vehicle.eps_in_angle_mode = true;
+    TEST_ASSERT_EQUAL_INT(600, steer(25, 600));
 }
 
 /* A start at an angle of another time would turn the steering there. Only a slew limit has a start. */
@@ -579,7 +595,7 @@ void test_the_slew_limit_does_not_start_from_an_angle_that_is_out_of_date(void) 
     TEST_ASSERT_TRUE(passes(AGV_MSG_STEERING_COMMAND, 0));
 }
 
-/* Only until the EPS takes angles: from then on the commands go on from the last one. */
+/* Once a 065h has passed in angle control, the commands go on from the last one. */
 /* Shows: TOP-2 */
 void test_a_slew_limit_that_has_started_needs_no_measured_angle(void) {
     config.steering_slew_ddeg_s = 4000;
@@ -588,9 +604,10 @@ void test_a_slew_limit_that_has_started_needs_no_measured_angle(void) {
     angle_fresh = false;
     TEST_ASSERT_FALSE(passes(AGV_MSG_STEERING_COMMAND, 0));
     vehicle.eps_in_angle_mode = true;
-    TEST_ASSERT_TRUE(passes(AGV_MSG_STEERING_COMMAND, 0));
+    TEST_ASSERT_FALSE(passes(AGV_MSG_STEERING_COMMAND, 0));
+    angle_fresh = true;
     (void)steer(25, 0);
-    vehicle.eps_in_angle_mode = false;
+    angle_fresh = false;
     TEST_ASSERT_TRUE(passes(AGV_MSG_STEERING_COMMAND, 0));
 }
 
@@ -669,8 +686,9 @@ void test_after_a_restart_the_slew_limit_starts_from_the_measured_angle(void) {
 
 /* An EPS that is stuck at the centre, and now and then reports another mode: the commands leave its angle all the same. */
 /* Shows: TOP-2, SUP-10 */
-void test_once_the_eps_has_taken_angles_its_mode_does_not_restart_the_slew_limit(void) {
+void test_while_driving_is_judged_the_mode_of_the_eps_does_not_restart_the_slew_limit(void) {
     config.steering_slew_ddeg_s = 4000;
+    judged = true;
     TEST_ASSERT_EQUAL_INT(100, steer(0, 500));
     TEST_ASSERT_EQUAL_INT(200, steer(25, 500));
     vehicle.eps_in_angle_mode = false;
@@ -679,6 +697,7 @@ void test_once_the_eps_has_taken_angles_its_mode_does_not_restart_the_slew_limit
     vehicle.eps_in_angle_mode = true;
     TEST_ASSERT_EQUAL_INT(500, steer(25, 500));
     agv_gateway_restart(&gateway); /* the next engagement begins before the EPS takes angles */
+    judged = false;
     vehicle.eps_in_angle_mode = false;
     TEST_ASSERT_EQUAL_INT(100, steer(25, 500));
     TEST_ASSERT_EQUAL_INT(100, steer(25, 500));
