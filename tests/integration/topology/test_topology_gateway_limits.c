@@ -145,6 +145,24 @@ void test_a_silent_gear_status_is_not_the_gear(void) {
     expect_state(&f, AGV_STATE_ACTIVE);
 }
 
+/* Only a warning here: D was sent in this engagement, so the next D is no change of the gear. */
+/* Shows: TOP-2, GEAR_STATUS_TIMEOUT */
+void test_the_gear_that_was_sent_passes_in_motion_while_its_status_is_silent(void) {
+    static const uint8_t drive[8] = {1};
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_GEAR_STATUS_TIMEOUT, false);
+    f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = GEAR_D;
+    fixture_active(&f);
+    fixture_gear(&f, GEAR_D);
+    fixture_run(&f, 100);
+    f.traffic[AGV_MSG_GEAR_STATUS].muted = true;
+    fixture_run(&f, 300);
+    fixture_drive(&f, 500);
+    fixture_run(&f, 100);
+    f.traffic[AGV_MSG_GEAR_COMMAND].muted = true;
+    fixture_run(&f, 60);
+    expect_pass(0x168, drive, drive);
+}
+
 /* P was sent at standstill in manual. Then the operator drives off, and 0A3h still says P. */
 /* Shows: TOP-2, FSM-1 */
 void test_p_that_was_sent_in_manual_does_not_pass_in_motion(void) {
