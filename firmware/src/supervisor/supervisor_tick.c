@@ -73,7 +73,9 @@ static bool observe_buses(agv_core_t *core, hal_t *hal) {
     agv_fault_monitor_set(faults, AGV_FAULT_BUS_OFF, (vehicle & AGV_BUS_OFF) != 0u);
     agv_fault_monitor_set(faults, AGV_FAULT_TX_STALLED, follow_stall(core, vehicle));
     agv_fault_monitor_set(faults, AGV_FAULT_ERROR_PASSIVE, (vehicle & AGV_BUS_PASSIVE) != 0u);
-    agv_fault_monitor_set(faults, AGV_FAULT_AI_BUS_OFF, (ai & (AGV_BUS_OFF | AGV_BUS_STALLED)) != 0u);
+    agv_fault_monitor_set(faults, AGV_FAULT_AI_BUS_OFF,
+                          ((ai & (AGV_BUS_OFF | AGV_BUS_STALLED)) != 0u) ||
+                              agv_timer_reached(&core->timers, AGV_TIMER_TX_AI));
     return (vehicle & AGV_BUS_RECOVERED) != 0u;
 }
 

@@ -53,6 +53,8 @@ void agv_transmitter_discard(agv_transmitter_t *transmitter, agv_timers_t *timer
             agv_timer_stop(timers, waits[i]);
         }
         agv_timer_stop(timers, AGV_TIMER_TX_STATUS);
+    } else {
+        agv_timer_stop(timers, AGV_TIMER_TX_AI);
     }
 }
 
@@ -118,15 +120,16 @@ static bool emit(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, 
     return false;
 }
 
-/* Send a message to its side. Returns whether it must wait; the waiting time of a command is measured. */
+/*
+ * Send a message to its side. Returns whether it must wait. The waiting time is measured: of each command, and of the AI side as
+ * a whole.
+ */
 static bool send_message(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t message,
                          const uint8_t data[AGV_DLC]) {
     const bool command = message < AGV_COMMAND_COUNT;
     const bool has_to_wait =
         emit(transmitter, orders, command ? HAL_CAN_VEHICLE : HAL_CAN_AI, orders->ids->of[message], data);
-    if (command) {
-        (void)agv_timer_while(orders->timers, waits[message], has_to_wait);
-    }
+    (void)agv_timer_while(orders->timers, command ? waits[message] : (uint32_t)AGV_TIMER_TX_AI, has_to_wait);
     return has_to_wait;
 }
 

@@ -356,6 +356,49 @@ void test_bus_off_of_the_ai_side(void) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
+static void active_before_a_status_message(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    fixture_active(&f);
+    f.long_run = true;
+    fixture_run_before(&f, AGV_MSG_VEHICLE_STATUS);
+}
+
+/* No frame for the AI side leaves for more than 100 ms. */
+/* Shows: SUP-7, AI_BUS_OFF */
+void test_a_queue_of_the_ai_side_that_accepts_nothing_only_warns(void) {
+    active_before_a_status_message();
+    sim_hal_set_full(&f.hal, HAL_CAN_AI, true);
+    fixture_run(&f, 1);
+    expect_nothing_after(&f, 100, AGV_FAULT_AI_BUS_OFF, AGV_STATE_ACTIVE);
+    expect_fault_after(&f, 1, AGV_FAULT_AI_BUS_OFF, true);
+    expect_warning(&f, AGV_FAULT_AI_BUS_OFF, AGV_STATE_ACTIVE);
+    expect_output(&f, true);
+    sim_hal_set_full(&f.hal, HAL_CAN_AI, false);
+    expect_fault_after(&f, 2, AGV_FAULT_AI_BUS_OFF, false);
+    expect_state(&f, AGV_STATE_ACTIVE);
+}
+
+/* Some of the status messages always wait, but the others leave. */
+/* Shows: SUP-7, AI_BUS_OFF */
+void test_a_queue_of_the_ai_side_that_is_full_most_of_the_time_is_no_fault(void) {
+    active_before_a_status_message();
+    for (uint32_t i = 0; i < 20; i++) {
+        sim_hal_set_full(&f.hal, HAL_CAN_AI, true);
+        expect_nothing_after(&f, 90, AGV_FAULT_AI_BUS_OFF, AGV_STATE_ACTIVE);
+        sim_hal_set_full(&f.hal, HAL_CAN_AI, false);
+        fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    }
+}
+
+/* Shows: SUP-7, AI_BUS_OFF */
+void test_a_queue_of_the_ai_side_that_accepts_nothing_trips_if_so_chosen(void) {
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_AI_BUS_OFF, true);
+    active_before_a_status_message();
+    sim_hal_set_full(&f.hal, HAL_CAN_AI, true);
+    fixture_run(&f, 102);
+    expect_tripped(&f, AGV_FAULT_AI_BUS_OFF);
+}
+
 /* Frames that wait for the AI side at its bus-off are dropped in that tick, one for each status message, and never
  * sent. */
 /* Shows: SUP-7, TOP-2, AI_BUS_OFF */

@@ -276,7 +276,8 @@ static bool waits_to_send(void) {
     for (unsigned i = 0; i < (unsigned)AGV_COMMAND_COUNT; i++) {
         waits = waits || agv_timer_is_started(&core()->timers, (unsigned)AGV_TIMER_TX_TURN_SIGNAL + i);
     }
-    return waits || agv_timer_is_started(&core()->timers, AGV_TIMER_TX_STATUS);
+    return waits || agv_timer_is_started(&core()->timers, AGV_TIMER_TX_STATUS) ||
+           agv_timer_is_started(&core()->timers, AGV_TIMER_TX_AI);
 }
 
 static void always(abstract_t *key) {

@@ -44,7 +44,7 @@
       timer == AGV_TIMER_PIN_PRESS ? c->reset_hold_ms :
       timer == AGV_TIMER_PIN_PRESS_LONG ? c->reset_hold_max_ms :
       timer == AGV_TIMER_WATCHDOG_FED ? c->watchdog_period_ms :
-      AGV_TIMER_TX_TURN_SIGNAL <= timer <= AGV_TIMER_TX_STATUS ? c->tx_stalled_ms :
+      AGV_TIMER_TX_TURN_SIGNAL <= timer <= AGV_TIMER_TX_AI ? c->tx_stalled_ms :
       timer == AGV_TIMER_MESSAGE_TURN_SIGNAL_COMMAND ? c->ai_heartbeat_timeout_ms :
       timer == AGV_TIMER_MESSAGE_GEAR_COMMAND ? c->gear_command_timeout_ms :
       timer == AGV_TIMER_MESSAGE_THROTTLE_COMMAND ? c->throttle_command_timeout_ms :
@@ -62,7 +62,7 @@
       (timer == AGV_TIMER_ANGLE || timer == AGV_TIMER_DISENGAGED ||
       AGV_TIMER_ENGAGEMENT_1 <= timer <= AGV_TIMER_BOTH_MODES ||
       AGV_TIMER_AI_NEVER_SEEN <= timer <= AGV_TIMER_OTHER_VEHICLE_STATUS || timer == AGV_TIMER_STARTUP ||
-      timer == AGV_TIMER_PRESS_LONG || timer == AGV_TIMER_PIN_PRESS_LONG || AGV_TIMER_TX_TURN_SIGNAL <= timer <= AGV_TIMER_TX_STATUS ||
+      timer == AGV_TIMER_PRESS_LONG || timer == AGV_TIMER_PIN_PRESS_LONG || AGV_TIMER_TX_TURN_SIGNAL <= timer <= AGV_TIMER_TX_AI ||
       AGV_TIMER_MESSAGE_TURN_SIGNAL_COMMAND <= timer <= AGV_TIMER_MESSAGE_WHEEL_SPEED) ? 1 : 0;
 
   // The age at which a timer has reached its limit.

@@ -169,6 +169,7 @@ static const struct {
     {AGV_TIMER_TX_TURN_SIGNAL, AGV_SETTING_tx_stalled_ms, 101},
     {AGV_TIMER_TX_STEERING, AGV_SETTING_tx_stalled_ms, 101},
     {AGV_TIMER_TX_STATUS, AGV_SETTING_tx_stalled_ms, 101},
+    {AGV_TIMER_TX_AI, AGV_SETTING_tx_stalled_ms, 101},
     {AGV_TIMER_EVENT_RX_OVERRUN, AGV_SETTING_event_hold_ms, 1000},
     {AGV_TIMER_EVENT_MODE_FLAPPING, AGV_SETTING_event_hold_ms, 1000},
     {AGV_TIMER_MESSAGE_TURN_SIGNAL_COMMAND, AGV_SETTING_ai_heartbeat_timeout_ms, 351},

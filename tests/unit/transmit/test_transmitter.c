@@ -262,7 +262,9 @@ void test_a_discarded_frame_is_never_sent(void) {
     expect_sent(0, HAL_CAN_AI, 0x101, ZEROS);
     hal_takes = false;
     pass(AGV_MSG_WHEEL_SPEED, ZEROS);
+    TEST_ASSERT_TRUE(agv_timer_is_started(&timers, AGV_TIMER_TX_AI));
     discard(HAL_CAN_AI);
+    TEST_ASSERT_FALSE(agv_timer_is_started(&timers, AGV_TIMER_TX_AI));
     TEST_ASSERT_EQUAL_UINT16(1, report().dropped);
     hal_takes = true;
     EXPECT_COUNT_AFTER(10, 1);
