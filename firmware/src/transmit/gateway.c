@@ -121,8 +121,8 @@ static uint32_t limit_to_speed(const agv_gateway_facts_t *facts, uint32_t wanted
 }
 
 /*
- * The limit starts one cycle ago, and again with each 065h until the EPS is in angle control. While driving is judged it goes on
- * whatever the EPS reports: with a stuck EPS, the commands would never leave the measured angle (SUP-10).
+ * The limit starts one cycle ago. Before driving is judged, a command without an EPS in angle control makes the next one start
+ * again. Later it goes on: with a stuck EPS, the commands would never leave the measured angle (SUP-10).
  */
 static void begin_slew(agv_gateway_t *gateway, const agv_gateway_facts_t *facts) {
     if (!gateway->steering_known) {

@@ -35,7 +35,7 @@ typedef struct {
     const agv_vehicle_t *vehicle;
     agv_state_t state;
     uint32_t now_ms;
-    uint8_t gear_sent; /**< gear of the last 168h that was sent in this engagement; 0: none, or not ACTIVE */
+    uint8_t gear_sent; /**< gear of the last 168h sent since the state became ACTIVE; 0: none */
     bool gear_fresh;   /**< 0A3h is fresh */
     bool angle_fresh;  /**< the last valid 067h is at most hold_age_ms old */
     bool autopilot;    /**< the last 363h reports autopilot */

@@ -185,7 +185,7 @@ typedef struct {
     hazard_recent_t recent[AGV_COMMAND_COUNT];
     uint16_t commanded[AGV_COMMAND_COUNT]; /**< the last value commanded to the vehicle */
     bool is_commanded[AGV_COMMAND_COUNT];  /**< in this engagement */
-    uint32_t untaken;                      /**< consecutive 065h of the supervisor that found no EPS in angle control */
+    uint32_t untaken;                      /**< 065h in a row that found no EPS in angle control */
     uint16_t throttle_high;                /**< 050h: the value from which it has to come down */
     uint64_t throttle_high_ms;
     uint16_t

@@ -66,8 +66,8 @@ static hazard_range_t range_now(const hazard_t *hazard, uint32_t within_ms) {
 }
 
 /**
- * The last 065h is no start for a slew limit when it and the one before came in the grace time while the EPS followed no angle:
- * the operator may have steered since.
+ * Whether a slew limit may go on from the last 065h. In the grace time it may not when the last two came while the EPS was not
+ * in angle control: the operator may have steered since.
  */
 static bool continues(const hazard_t *hazard) {
     return hazard->is_commanded[AGV_MSG_STEERING_COMMAND] &&
