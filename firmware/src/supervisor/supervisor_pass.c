@@ -89,7 +89,6 @@ agv_tx_orders_t agv_core_orders(agv_core_t *core, const agv_ports_t *ports) {
                              .park_released = core->machine.park_released,
                              .holdable = is_holdable(core),
                              .passive = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_ERROR_PASSIVE),
-                             .stalled = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_TX_STALLED),
                              .config_checksum = core->config_checksum,
                              .version = ports->version};
 }
@@ -247,7 +246,7 @@ static bool withdraw_frames(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
     const bool starts =
         (core->machine.state == (uint8_t)AGV_STATE_INIT) && agv_liveness_alive(&core->liveness, AGV_NODE_VCU);
     const bool begins = core->stall_begins && (is_latched(core) || starts);
-    core->stall_begins = false;
+    core->stall_begins = core->stall_begins && !begins;
     if (stuck || begins) {
         agv_hold_withdrawn(&core->hold);
         agv_transmitter_withdraw(&core->transmitter, &core->timers, !begins);
@@ -269,6 +268,7 @@ static bool follow_state(agv_core_t *core, hal_t *hal, uint32_t what, uint32_t e
     if ((what & AGV_ACTION_RESET_ACCEPTED) != 0u) {
         agv_liveness_forget_ai(&core->liveness);
         agv_deadlines_forget_ai(&core->faults);
+        agv_timer_stop(&core->timers, AGV_TIMER_DISENGAGED); /* the next engagement is a new one */
     }
     if ((what & AGV_ACTION_STATE) != 0u) {
         agv_gateway_restart(&core->gateway);

@@ -50,7 +50,7 @@ static void track_hold_frame(agv_core_t *core, uint32_t report) {
 static bool follow_stall(agv_core_t *core, uint32_t report) {
     const bool stalled = agv_transmitter_is_stalled(&core->timers) || ((report & AGV_BUS_STALLED) != 0u);
     const bool waits = agv_transmitter_waits(&core->timers) || ((report & AGV_BUS_WAITING) != 0u);
-    core->stall_begins = stalled && !core->stalled;
+    core->stall_begins = stalled && (core->stall_begins || !core->stalled);
     core->stalled = stalled;
     return stalled || (waits && agv_fault_monitor_is_active(&core->faults, AGV_FAULT_TX_STALLED));
 }

@@ -121,15 +121,16 @@ static uint32_t limit_to_speed(const agv_gateway_facts_t *facts, uint32_t wanted
 }
 
 /*
- * The limit starts one cycle ago. Before driving is judged, a command without an EPS in angle control makes the next one start
- * again. Later it goes on: with a stuck EPS, the commands would never leave the measured angle (SUP-10).
+ * The limit starts one cycle ago. After a command without an EPS in angle control the next one starts again. Once driving is
+ * judged, a limit that an EPS in angle control has followed goes on: with a stuck EPS, the commands would never leave the
+ * measured angle (SUP-10).
  */
 static void begin_slew(agv_gateway_t *gateway, const agv_gateway_facts_t *facts) {
     if (!gateway->steering_known) {
         reach(&gateway->steering, facts->vehicle->angle_raw,
               facts->now_ms - agv_message_cycle_ms(AGV_MSG_STEERING_COMMAND));
     }
-    gateway->steering_known = facts->vehicle->eps_in_angle_mode || facts->judged;
+    gateway->steering_known = facts->vehicle->eps_in_angle_mode || (facts->judged && gateway->steering_known);
 }
 
 /* Raw angles: a step is a tenth of a degree. */

@@ -156,16 +156,16 @@ static void send_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orde
     }
 }
 
-/* The nth own command that is sent. In a stall, a command that cannot leave comes after those that can. */
-static uint32_t nth_command(const agv_tx_orders_t *orders, uint32_t n) {
-    return orders->stalled ? (((uint32_t)AGV_COMMAND_COUNT - 1u) - n) : n;
+/* The nth own command that is sent, in the order of arbitration: no command waits in a port behind one that cannot leave. */
+static uint32_t nth_command(uint32_t n) {
+    return ((uint32_t)AGV_COMMAND_COUNT - 1u) - n;
 }
 
 void agv_transmitter_burst(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
     const uint32_t wanted = wanted_commands(orders);
     agv_scheduler_restart(&transmitter->scheduler, orders->timers->now_ms);
     for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
-        const uint32_t command = nth_command(orders, i);
+        const uint32_t command = nth_command(i);
         if ((wanted & agv_message_bit(command)) != 0u) {
             send_own(transmitter, orders, command);
         }
@@ -403,7 +403,7 @@ void agv_transmitter_tick(agv_transmitter_t *transmitter, const agv_tx_orders_t 
     }
     if ((wanted | transmitter->wanted_before) != 0u) {
         for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
-            tick_own(transmitter, orders, nth_command(orders, i), wanted);
+            tick_own(transmitter, orders, nth_command(i), wanted);
         }
     }
     transmitter->wanted_before = (uint8_t)wanted;

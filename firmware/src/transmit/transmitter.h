@@ -75,7 +75,6 @@ typedef struct {
     bool park_released; /**< own 168h may be sent (FSM-1) */
     bool holdable;      /**< own 065h may be sent (FSM-10) */
     bool passive;       /**< ERROR_PASSIVE: overrides wait until a burst is over */
-    bool stalled;       /**< TX_STALLED: own commands are sent in the order of their identifiers, the lowest first */
     uint32_t config_checksum;
     const agv_version_t *version; /**< NULL: none */
 } agv_tx_orders_t;

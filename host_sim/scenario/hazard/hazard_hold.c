@@ -188,7 +188,8 @@ static void allow_again(hazard_t *hazard, uint16_t value) {
 
 /** Passed on for the AI computer: after a reset the safe commands may have ended already. */
 static bool is_passed_on(const hazard_t *hazard, uint16_t value) {
-    const bool is_limited = hazard->limits_steering && hazard_reset_was_asked(hazard) && hazard->mode.autopilot;
+    const bool may_pass = hazard->mode.autopilot || (hazard->config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL);
+    const bool is_limited = hazard->limits_steering && hazard_reset_was_asked(hazard) && may_pass;
 
     return hazard->gateway && (is_limited || hazard_was_sent(hazard, AGV_MSG_STEERING_COMMAND, value));
 }

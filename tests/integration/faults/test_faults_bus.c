@@ -181,6 +181,24 @@ void test_in_init_a_frame_that_cannot_leave_waits_for_a_vcu(void) {
     expect_withdrawals_in_init(true, 1);
 }
 
+/* A stall that began before the VCU was there is answered when it is. A node that sends 400h without a pause keeps back 43Fh. */
+/* Shows: SUP-7, TX_STALLED, TOP-1 */
+void test_in_init_a_frame_that_cannot_leave_is_withdrawn_for_a_late_vcu(void) {
+    fixture_start(&f);
+    fixture_mute_vcu(&f, true);
+    fixture_run(&f, 30);
+    sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
+    fixture_run(&f, 200);
+    const uint32_t purged = purges(HAL_CAN_VEHICLE);
+    fixture_mute_vcu(&f, false);
+    fixture_run(&f, 1);
+    fixture_forget_sent(&f);
+    fixture_run(&f, 30);
+    TEST_ASSERT_EQUAL_UINT32(purged + 1, purges(HAL_CAN_VEHICLE));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F));
+}
+
 /* The status frame goes out in its next slot: it may be what cannot leave, and would be next in the controller. */
 /* Shows: SUP-7, TOP-3, TX_STALLED */
 void test_a_status_frame_that_is_withdrawn_waits_for_its_slot(void) {

@@ -154,11 +154,11 @@ static void expect_frame(uint32_t id, uint8_t at, uint8_t value, uint8_t last) {
     hal_can_send_ExpectAndReturn(&hal, HAL_CAN_VEHICLE, kept(frame), true);
 }
 
-/* 43Fh hazard, autopilot off, headlight on, running counter; 168h P; 075h 0. */
+/* 075h 0; 168h P; 43Fh hazard, autopilot off, headlight on, running counter. */
 static void expect_safe_commands(uint8_t signal_counter) {
-    expect_frame(0x43F, 4, 0x70, signal_counter);
-    expect_frame(0x168, 0, 8, 0);
     expect_frame(0x075, 0, 0, 0);
+    expect_frame(0x168, 0, 8, 0);
+    expect_frame(0x43F, 4, 0x70, signal_counter);
 }
 
 /* 7F0h: state, first reason or FFh, output open, counter, checksum of the configuration with the low byte first. */
@@ -442,8 +442,8 @@ void test_a_trip_discards_what_waits_then_sends_then_stores(void) {
     walk_to_active();
     be_strict();
     hal_can_purge_Expect(&hal, HAL_CAN_VEHICLE);
-    expect_safe_commands(own_counter());
     expect_held_angle();
+    expect_safe_commands(own_counter());
     expect_latch(0x96, AGV_FAULT_S_DRIVER_ALARM, AGV_FAULT_NONE);
     vcu_frame(0x80);
     TEST_ASSERT_EQUAL(AGV_STATE_TRIPPED, agv_supervisor_state(&supervisor));
@@ -590,8 +590,8 @@ void test_a_refused_frame_is_not_sent_and_trips(void) {
     expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
     expect_status(HAL_CAN_AI, HAL_CAN_ERROR_ACTIVE);
     hal_can_purge_Expect(&hal, HAL_CAN_VEHICLE);
-    expect_safe_commands(own_counter());
     expect_held_angle();
+    expect_safe_commands(own_counter());
     expect_latch(0x96, AGV_FAULT_TX_GATE_REFUSED, AGV_FAULT_NONE);
     expect_fed(true);
     expect_led_on();

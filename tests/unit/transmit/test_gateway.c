@@ -553,10 +553,14 @@ void test_the_slew_limit_starts_from_the_measured_angle(void) {
     TEST_ASSERT_EQUAL_INT(-100, steer(25, -9000));
 }
 
-/* At a hand-over the operator may still steer, for as long as the EPS is not in angle control. */
+/* At a hand-over the operator may still steer, for as long as the EPS is not in angle control. An engagement that continues one
+ * is judged from its start. */
 /* Shows: TOP-2 */
-void test_the_slew_limit_starts_anew_until_the_eps_is_in_angle_control(void) {
+TEST_CASE(false)
+TEST_CASE(true)
+void test_the_slew_limit_starts_anew_until_the_eps_is_in_angle_control(bool continues) {
     config.steering_slew_ddeg_s = 4000;
+    judged = continues;
     vehicle.eps_in_angle_mode = false;
     TEST_ASSERT_EQUAL_INT(0, steer(25, 0));
     vehicle.angle_raw = 9000 + 600;

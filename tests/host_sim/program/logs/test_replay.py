@@ -80,8 +80,8 @@ class Healthy(hostsim.Case):
         result = self.replay(traffic.log(traffic.frames(1000)))
         first = [sent for sent in result.sent() if sent.can_id != STATUS][:3]
         self.assertEqual([sent.us for sent in first], [BASE_US] * 3)
-        self.assertEqual([(sent.can_id, sent.data) for sent in first[1:]], [SAFE_GEAR, SAFE_THROTTLE])
-        self.assertEqual((first[0].can_id, first[0].data[:7]), (SAFE_LIGHTS, bytes([0, 0, 0, 0, 0x70, 0, 0])))
+        self.assertEqual([(sent.can_id, sent.data) for sent in first[:2]], [SAFE_THROTTLE, SAFE_GEAR])
+        self.assertEqual((first[2].can_id, first[2].data[:7]), (SAFE_LIGHTS, bytes([0, 0, 0, 0, 0x70, 0, 0])))
         self.assertNotIn(0x065, [sent.can_id for sent in result.sent()])
 
     # Shows: P1
