@@ -1,9 +1,13 @@
-/* Queue of frames to send, in the order of arbitration. At most one frame is in the kernel. */
+/* Queue of frames to send, in the order of arbitration. At most one frame is in the kernel. Of the frames with one identifier
+ * only the newest waits. Those that were given together all wait: they carry different things. */
 #include <string.h>
 
 #include "linux_hal_internal.h"
 
 enum { US_PER_MS = 1000, STANDARD_SHIFT = 18 };
+
+/* Frames with one identifier that are given within this time belong together. */
+enum { TOGETHER_US = 1000 };
 
 /* Patience with a frame whose echo does not come: after a purge; without one, so that a stall is reported before (SUP-7). */
 enum { PATIENCE_US = 100000, PATIENCE_UNPURGED = 10, DOUBLED_MAX = 7 };
@@ -37,6 +41,16 @@ static linux_can_write_t write_now(linux_hal_side_t *side, const linux_hal_waiti
     return result;
 }
 
+static linux_hal_waiting_t *find_older(linux_hal_side_t *side, const hal_can_frame_t *frame, uint64_t now_us) {
+    for (size_t i = 0; i < side->waiting_count; i++) {
+        linux_hal_waiting_t *waiting = &side->waiting[i];
+        if (rank_of(&waiting->frame) == rank_of(frame) && now_us > waiting->taken_us + (uint64_t)TOGETHER_US) {
+            return waiting;
+        }
+    }
+    return NULL;
+}
+
 /* Insert behind all frames of higher or equal priority, so that of two with the same identifier the older one is sent
  * first. */
 static void insert(linux_hal_side_t *side, const linux_hal_waiting_t *frame) {
@@ -50,12 +64,18 @@ static void insert(linux_hal_side_t *side, const linux_hal_waiting_t *frame) {
 }
 
 bool linux_hal_queue_take(linux_hal_side_t *side, const hal_can_frame_t *frame, uint64_t now_us) {
-    const linux_hal_waiting_t waiting = {.frame = *frame, .taken_us = now_us};
+    linux_hal_waiting_t *const older = find_older(side, frame, now_us);
+    const linux_hal_waiting_t waiting = {
+        .frame = *frame, .taken_us = now_us, .since_us = older == NULL ? now_us : older->since_us};
     if (!can_be_sent(frame)) {
         return false;
     }
     if (!side->in_flight && side->waiting_count == 0) {
         return write_now(side, &waiting, now_us) == LINUX_CAN_TAKEN;
+    }
+    if (older != NULL) {
+        *older = waiting;
+        return true;
     }
     if (side->waiting_count == LINUX_HAL_QUEUE_SIZE) {
         return false;
@@ -117,9 +137,9 @@ uint32_t linux_hal_queue_pending_ms(const linux_hal_side_t *side, uint64_t now_u
     if (!sent_counts && side->waiting_count == 0) {
         return 0;
     }
-    uint64_t oldest_us = sent_counts ? side->sent.taken_us : UINT64_MAX;
+    uint64_t oldest_us = sent_counts ? side->sent.since_us : UINT64_MAX;
     for (size_t i = 0; i < side->waiting_count; i++) {
-        oldest_us = (side->waiting[i].taken_us < oldest_us) ? side->waiting[i].taken_us : oldest_us;
+        oldest_us = (side->waiting[i].since_us < oldest_us) ? side->waiting[i].since_us : oldest_us;
     }
     const uint64_t age_ms = (now_us > oldest_us) ? (now_us - oldest_us) / US_PER_MS : 0;
     return (age_ms == 0) ? 1u : (uint32_t)age_ms;

@@ -8,6 +8,10 @@
  * bits, and waits at most 1.3 ms for the frame of another node that is on the bus already. */
 enum { FRAME_TURN_MS = 3 };
 
+/* A frame that waits for longer keeps back frames of higher priority: the driver takes one at a time. At 125 kbit/s, with all
+ * messages due at once, the lowest priority waits for 20 ms. A stop may lose a frame that is being received. */
+enum { FRAME_PATIENCE_MS = 21 };
+
 enum { US_PER_MS = 1000 };
 
 BUILD_ASSERT(sizeof(((hal_can_frame_t *)0)->data) <= CAN_MAX_DLEN,
@@ -201,12 +205,12 @@ static bool is_in_flight(zephyr_hal_side_t *side) {
     return in_flight;
 }
 
-static bool give(zephyr_hal_side_t *side, const hal_can_frame_t *frame, uint32_t taken_ms, uint32_t now_ms) {
-    struct can_frame given = {.id = frame->id, .dlc = can_bytes_to_dlc(frame->length)};
-    (void)memcpy(given.data, frame->data, MIN(frame->length, sizeof frame->data));
+static bool give(zephyr_hal_side_t *side, const zephyr_hal_waiting_t *frame, uint32_t now_ms) {
+    struct can_frame given = {.id = frame->frame.id, .dlc = can_bytes_to_dlc(frame->frame.length)};
+    (void)memcpy(given.data, frame->frame.data, MIN(frame->frame.length, sizeof frame->frame.data));
     set_in_flight(side, true);
     side->sent_is_purged = false;
-    side->sent_taken_ms = taken_ms;
+    side->sent = *frame;
     side->sent_given_ms = now_ms;
     const can_tx_callback_t on_sent = side->newest_is_odd ? on_odd_sent : on_even_sent;
     const bool taken = can_send(side->device, &given, K_NO_WAIT, on_sent, side) == 0;
@@ -227,28 +231,9 @@ bool hal_can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame)
     }
     const uint32_t now_ms = hal_clock_now_ms(hal);
     if (!is_in_flight(sender) && (sender->waiting_count == 0u)) {
-        return give(sender, frame, now_ms, now_ms);
+        return give(sender, &(zephyr_hal_waiting_t){.frame = *frame, .taken_ms = now_ms, .since_ms = now_ms}, now_ms);
     }
-    return zephyr_queue_insert(sender, frame, now_ms);
-}
-
-static void transmit(zephyr_hal_side_t *side, uint32_t now_ms) {
-    if (side->state == HAL_CAN_BUS_OFF) {
-        side->waiting_count = 0u;
-    } else if (!is_in_flight(side) && (side->waiting_count > 0u) &&
-               give(side, &side->waiting[0].frame, side->waiting[0].taken_ms, now_ms)) {
-        zephyr_queue_drop_first(side);
-    } else {
-        /* the driver is busy or refused the frame, or no frame waits */
-    }
-}
-
-void zephyr_hal_transmit(hal_t *hal) {
-    for (uint32_t i = 0u; i < (uint32_t)HAL_CAN_SIDES; i++) {
-        if (hal->sides[i].device != NULL) {
-            transmit(&hal->sides[i], hal_clock_now_ms(hal));
-        }
-    }
+    return zephyr_queue_put(sender, frame, now_ms);
 }
 
 BUILD_ASSERT(IS_ENABLED(CONFIG_CAN_STATS) || IS_ENABLED(CONFIG_CAN_FAKE),
@@ -283,7 +268,7 @@ static void start_again(zephyr_hal_side_t *side) {
 }
 
 /* Zephyr's only way is a stop. Its result does not matter: a controller that has not stopped does not start again either. A
- * start sets the error counters to 0; one purge in 100 ms leaves time for a bus-off, which takes 32 failed frames. */
+ * start sets the error counters to 0; the stops are far enough apart for a bus-off, which takes 32 failed frames. */
 static void take_back(zephyr_hal_side_t *side) {
     (void)can_stop(side->device);
     const k_spinlock_key_t key = k_spin_lock(&side->lock);
@@ -298,8 +283,8 @@ static void take_back(zephyr_hal_side_t *side) {
 }
 
 /* Not in bus-off, because a start would end it, nor while the controller only listens. */
-static bool is_kept_from_the_bus(zephyr_hal_side_t *side, uint32_t now_ms) {
-    const bool overdue = is_in_flight(side) && ((now_ms - side->sent_given_ms) > (uint32_t)FRAME_TURN_MS);
+static bool is_kept_from_the_bus(zephyr_hal_side_t *side, uint32_t now_ms, uint32_t patience_ms) {
+    const bool overdue = is_in_flight(side) && ((now_ms - side->sent_given_ms) > patience_ms);
     if (!overdue || side->listen_only) {
         return false;
     }
@@ -307,13 +292,50 @@ static bool is_kept_from_the_bus(zephyr_hal_side_t *side, uint32_t now_ms) {
     return side->state != HAL_CAN_BUS_OFF;
 }
 
+/* A frame that was purged while it could be on the bus is taken back when it turns out that it is not. */
+static void withdraw_purged(zephyr_hal_side_t *side, uint32_t now_ms) {
+    if (is_kept_from_the_bus(side, now_ms, FRAME_TURN_MS)) {
+        take_back(side);
+    }
+}
+
 void hal_can_purge(hal_t *hal, hal_can_side_t side) {
     zephyr_hal_side_t *const purged = zephyr_hal_side(hal, side);
     if (purged != NULL) {
         purged->waiting_count = 0u;
         purged->sent_is_purged = true;
-        if (is_kept_from_the_bus(purged, hal_clock_now_ms(hal))) {
-            take_back(purged);
+        withdraw_purged(purged, hal_clock_now_ms(hal));
+    }
+}
+
+/* A frame that is kept from the bus lets those of higher priority go first. */
+static void make_way(zephyr_hal_side_t *side, uint32_t now_ms) {
+    const bool in_the_way = (side->waiting_count > 0u) && (side->waiting[0].frame.id < side->sent.frame.id);
+    if (in_the_way && is_kept_from_the_bus(side, now_ms, FRAME_PATIENCE_MS)) {
+        take_back(side);
+        zephyr_queue_put_back(side, &side->sent);
+    }
+}
+
+static void transmit(zephyr_hal_side_t *side, uint32_t now_ms) {
+    if (side->sent_is_purged) {
+        withdraw_purged(side, now_ms);
+    } else {
+        make_way(side, now_ms);
+    }
+    if (side->state == HAL_CAN_BUS_OFF) {
+        side->waiting_count = 0u;
+    } else if (!is_in_flight(side) && (side->waiting_count > 0u) && give(side, &side->waiting[0], now_ms)) {
+        zephyr_queue_drop_first(side);
+    } else {
+        /* the driver is busy or refused the frame, or no frame waits */
+    }
+}
+
+void zephyr_hal_transmit(hal_t *hal) {
+    for (uint32_t i = 0u; i < (uint32_t)HAL_CAN_SIDES; i++) {
+        if (hal->sides[i].device != NULL) {
+            transmit(&hal->sides[i], hal_clock_now_ms(hal));
         }
     }
 }

@@ -14,8 +14,14 @@ zephyr_hal_side_t *zephyr_hal_side(hal_t *hal, hal_can_side_t side);
 /** Start a controller on the bus. @return true: it works as the contract requires */
 bool zephyr_can_start(zephyr_hal_side_t *side, const zephyr_hal_config_t *config);
 
-/** Insert a frame into the queue, behind all frames of higher or equal priority. @return false: no room */
-bool zephyr_queue_insert(zephyr_hal_side_t *side, const hal_can_frame_t *frame, uint32_t now_ms);
+/**
+ * Put a frame in the queue, behind all frames of higher or equal priority. It takes the place, and the age, of an older frame
+ * with the same identifier. @return false: no room
+ */
+bool zephyr_queue_put(zephyr_hal_side_t *side, const hal_can_frame_t *frame, uint32_t now_ms);
+
+/** Put a frame back that the driver had. A newer one with its identifier stays instead, and takes over its age. */
+void zephyr_queue_put_back(zephyr_hal_side_t *side, const zephyr_hal_waiting_t *taken_back);
 
 /** Remove the first frame of the queue, which must not be empty. */
 void zephyr_queue_drop_first(zephyr_hal_side_t *side);

@@ -51,6 +51,7 @@ typedef struct {
 typedef struct {
     hal_can_frame_t frame;
     uint64_t taken_us; /**< when hal_can_send() took it */
+    uint64_t since_us; /**< when the first frame was taken in whose place it waits; its own time if there was none */
 } linux_hal_waiting_t;
 
 /** One side. */

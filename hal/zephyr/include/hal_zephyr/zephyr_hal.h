@@ -75,7 +75,8 @@ typedef struct {
 /** A frame that waits to be sent. */
 typedef struct {
     hal_can_frame_t frame;
-    uint32_t taken_ms;
+    uint32_t taken_ms; /**< when hal_can_send() took it */
+    uint32_t since_ms; /**< when the first frame was taken in whose place it waits; its own time if there was none */
 } zephyr_hal_waiting_t;
 
 /** One controller. Only the port uses the members. */
@@ -95,7 +96,7 @@ typedef struct {
     bool running;  /**< started without an error */
     bool listen_only;
     bool sent_is_purged;
-    uint32_t sent_taken_ms;                              /**< when the port took the frame that the driver has */
+    zephyr_hal_waiting_t sent;                           /**< the frame that the driver has */
     uint32_t sent_given_ms;                              /**< when the driver took it */
     uint32_t driver_lost;                                /**< frames lost by the driver */
     uint32_t driver_counted;                             /**< the driver's counter, when it was last read */

@@ -289,6 +289,95 @@ ZTEST(port_can, test_a_purge_leaves_a_frame_that_may_be_on_the_bus) {
     zassert_equal(vehicle->stops, 0u, "all was sent");
 }
 
+/* It lost the arbitration all the time. */
+/* Shows: FSM-2 */
+ZTEST(port_can, test_a_purged_frame_that_turns_out_not_to_be_on_the_bus_is_taken_back) {
+    (void)send(0x168u, 1u);
+    k_msleep(2);
+    hal_can_purge(&hal, HAL_CAN_VEHICLE);
+    (void)send(0x075u, 2u);
+    zephyr_hal_transmit(&hal);
+    zassert_equal(vehicle->stops, 0u);
+    k_msleep(LONG_MS);
+    zephyr_hal_transmit(&hal);
+    zassert_equal(vehicle->stops, 1u);
+    zassert_equal(vehicle->in_mailbox, 1u);
+    zassert_equal(vehicle->sent[vehicle->sent_count - 1u].id, 0x075u);
+    expect_on_the_bus();
+}
+
+static void leaves_next(uint32_t id, uint8_t first) {
+    const struct can_frame *const newest = &vehicle->sent[vehicle->sent_count - 1u];
+    zassert_equal(vehicle->in_mailbox, 1u);
+    zassert_equal(newest->id, id);
+    zassert_equal(newest->data[0], first);
+    fake_bus_complete(HAL_CAN_VEHICLE, 0);
+    zephyr_hal_transmit(&hal);
+}
+
+/* Another node sends 300h without a pause. */
+/* Shows: TOP-1, SUP-7 */
+ZTEST(port_can, test_a_frame_that_is_kept_from_the_bus_lets_those_of_higher_priority_go_first) {
+    (void)send(0x43Fu, 1u);
+    (void)send(0x075u, 2u);
+    (void)send(0x7F0u, 3u);
+    k_msleep(20);
+    zephyr_hal_transmit(&hal);
+    zassert_equal(vehicle->stops, 0u, "at 125 kbit/s it may still come to its turn");
+    k_msleep(5);
+    zephyr_hal_transmit(&hal);
+    zassert_equal(vehicle->stops, 1u);
+    zassert_equal(fake_buses[HAL_CAN_AI].stops, 0u);
+    zassert_within(fixture_status().tx_pending_ms, 25u, 1u, "43Fh still waits");
+    leaves_next(0x075u, 2u);
+    leaves_next(0x43Fu, 1u);
+    leaves_next(0x7F0u, 3u);
+    zassert_equal(fixture_status().tx_pending_ms, 0u);
+    expect_on_the_bus();
+}
+
+/* Shows: TOP-1 */
+ZTEST(port_can, test_a_frame_of_the_highest_priority_is_left_in_the_controller) {
+    (void)send(0x065u, 1u);
+    (void)send(0x075u, 2u);
+    k_msleep(50);
+    zephyr_hal_transmit(&hal);
+    zassert_equal(vehicle->stops, 0u);
+    leaves_next(0x065u, 1u);
+    leaves_next(0x075u, 2u);
+}
+
+/* Shows: TOP-1, TOP-2, SUP-7 */
+ZTEST(port_can, test_of_older_frames_with_one_identifier_the_newest_waits_and_is_as_old_as_the_first) {
+    (void)send(0x168u, 1u);
+    k_msleep(5);
+    (void)send(0x065u, 2u);
+    for (uint32_t i = 0u; i < ZEPHYR_HAL_QUEUE_SIZE; i++) {
+        k_msleep(5);
+        zassert_true(send(0x065u, 3u + i));
+    }
+    fake_bus_complete(HAL_CAN_VEHICLE, 0);
+    zephyr_hal_transmit(&hal);
+    zassert_within(fixture_status().tx_pending_ms, 80u, 1u);
+    leaves_next(0x065u, 2u + ZEPHYR_HAL_QUEUE_SIZE);
+    zassert_equal(fixture_status().tx_pending_ms, 0u);
+}
+
+/* The newer one takes over the age of the one that was taken back. */
+/* Shows: TOP-1, SUP-7 */
+ZTEST(port_can, test_a_frame_that_is_taken_back_does_not_replace_a_newer_one) {
+    (void)send(0x43Fu, 1u);
+    (void)send(0x075u, 2u);
+    k_msleep(15);
+    (void)send(0x43Fu, 3u);
+    k_msleep(10);
+    zephyr_hal_transmit(&hal);
+    leaves_next(0x075u, 2u);
+    zassert_within(fixture_status().tx_pending_ms, 25u, 1u);
+    leaves_next(0x43Fu, 3u);
+    zassert_equal(fixture_status().tx_pending_ms, 0u);
+}
+
 static void expect_bus_off(void) {
     const hal_can_status_t status = fixture_status();
     zassert_equal(status.state, HAL_CAN_BUS_OFF);
