@@ -4,12 +4,18 @@
 #include <zephyr/sys/util.h>
 #include <zephyr/toolchain.h>
 
-BUILD_ASSERT(CONFIG_HEAP_MEM_POOL_SIZE == 0, "there is no heap");
 BUILD_ASSERT(CONFIG_SYS_CLOCK_TICKS_PER_SEC >= 1000, "the kernel's clock has to tell milliseconds");
 
+/* An application with a main() of its own decides about its heap, and in which thread the supervisor runs. */
+#if !defined(CONFIG_AGV_SUPERVISOR)
+BUILD_ASSERT(CONFIG_HEAP_MEM_POOL_SIZE == 0, "there is no heap");
 #if !defined(CONFIG_ZTEST)
-BUILD_ASSERT((CONFIG_MAIN_THREAD_PRIORITY < 0) && (CONFIG_SYSTEM_WORKQUEUE_PRIORITY >= 0),
-             "the supervisor is a cooperative thread, and no other one keeps the processor from it");
+BUILD_ASSERT(CONFIG_MAIN_THREAD_PRIORITY < 0, "the supervisor is a cooperative thread");
+#endif
+#endif
+
+#if !defined(CONFIG_ZTEST)
+BUILD_ASSERT(CONFIG_SYSTEM_WORKQUEUE_PRIORITY >= 0, "the work queue does not keep the processor from the supervisor");
 BUILD_ASSERT(IS_ENABLED(CONFIG_ARCH_POSIX) ||
                  !(IS_ENABLED(CONFIG_LOG_MODE_IMMEDIATE) || IS_ENABLED(CONFIG_LOG_MODE_MINIMAL) ||
                    IS_ENABLED(CONFIG_LOG_BLOCK_IN_THREAD) || IS_ENABLED(CONFIG_DEBUG_COREDUMP)),

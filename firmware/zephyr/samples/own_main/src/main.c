@@ -1,11 +1,13 @@
 /* An application with a main() of its own: it runs the supervisor, and prints each new state. */
-#include <zephyr/sys/printk.h>
+#include <zephyr/logging/log.h>
 
 #include "agv/names.h"
 #include "agv/recorder.h"
 #include "agv/supervisor.h"
 #include "hal_zephyr/zephyr_hal.h"
 #include "kconfig.h"
+
+LOG_MODULE_REGISTER(supervisor); /* a thread of the lowest priority prints: printk() would make the supervisor wait */
 
 static ZEPHYR_HAL_RETAINED agv_recorder_t recorder;
 static ZEPHYR_HAL_RETAINED zephyr_hal_retained_t retained;
@@ -52,7 +54,7 @@ int main(void) {
         zephyr_hal_transmit(&hal);
         if ((int)agv_supervisor_state(&supervisor) != printed) {
             printed = (int)agv_supervisor_state(&supervisor);
-            printk("supervisor: %s\n", agv_state_name((agv_state_t)printed));
+            LOG_INF("%s", agv_state_name((agv_state_t)printed));
         }
     }
     return 0;
