@@ -12,6 +12,9 @@ enum { LOG_AREA = DT_FIXED_PARTITION_ID(DT_PHANDLE(ZEPHYR_HAL_NODE, log_partitio
 /* FCB writes a header of 8 bytes, so flash with larger write blocks cannot be used. */
 enum { LOG_MAGIC = 0x4C564741, BLOCK_MAX = 8, ERASED = 0xFF, CHUNK_WORDS = 16 };
 
+/* Where a length or a header cannot be written, a record goes on: the active sector is closed, and one sector left out. */
+enum { SECTORS_LEFT_MAX = 2 };
+
 static struct flash_sector sectors[CONFIG_AGV_LOG_SECTORS];
 static struct fcb log_buffer;
 
@@ -67,7 +70,9 @@ static sector_state_t examine(const struct flash_area *area, const struct flash_
         return state;
     }
     state.id = head.id;
-    if ((head.magic == (uint32_t)LOG_MAGIC) && (head.version == count) && (head.id != UINT16_MAX)) {
+    /* The identifier FFFFh is that of a torn header only without records: the log counts up to it. */
+    if ((head.magic == (uint32_t)LOG_MAGIC) && (head.version == count) &&
+        ((head.id != UINT16_MAX) || !is_erased(area, sector, sizeof head))) {
         state.kind = SECTOR_OF_LOG;
     } else if (is_erased(area, sector, 0u)) {
         state.kind = SECTOR_ERASED;
@@ -91,12 +96,19 @@ static uint32_t find_newest(const sector_state_t *states, uint32_t count) {
     return newest;
 }
 
-/* FCB erases one sector at a time, the one behind the newest. Content that is not of the log anywhere else is foreign. */
+/* FCB erases one sector at a time, the one behind the newest; in a log that has gone around, perhaps behind a worn one. */
+static bool may_be_torn(const sector_state_t *states, uint32_t count, uint32_t newest, uint32_t sector) {
+    const uint32_t next = (newest + 1u) % count;
+    const bool is_left_out = (states[next].kind == SECTOR_ERASED) || (states[next].kind == SECTOR_BEGUN);
+    return (sector == next) || (is_left_out && (states[newest].id >= count) && (sector == ((next + 1u) % count)));
+}
+
+/* Content that is not of the log, and that no power cut explains, is foreign. */
 static bool is_foreign(const sector_state_t *states, uint32_t count) {
     const uint32_t newest = find_newest(states, count);
     for (uint32_t i = 0u; i < count; i++) {
-        const bool may_be_torn = (newest != count) && (i == ((newest + 1u) % count));
-        if ((states[i].kind == SECTOR_OTHER) && !may_be_torn) {
+        const bool may_be = (newest != count) && may_be_torn(states, count, newest, i);
+        if ((states[i].kind == SECTOR_OTHER) && !may_be) {
             return true;
         }
     }
@@ -134,6 +146,56 @@ static uint32_t find_sectors(void) {
     return ((status == 0) || (status == -ENOMEM)) ? count : 0u;
 }
 
+static struct flash_sector *sector_after(const struct flash_sector *sector) {
+    const uint32_t next = (uint32_t)(sector - log_buffer.f_sectors) + 1u;
+    return &log_buffer.f_sectors[next % log_buffer.f_sector_cnt];
+}
+
+/* No more records go into the active sector. When it was closed before, the next one cannot be begun: leave that out. */
+static void leave_sector(void) {
+    struct fcb_entry *const active = &log_buffer.f_active;
+    if (active->fe_elem_off == active->fe_sector->fs_size) {
+        active->fe_sector = sector_after(active->fe_sector);
+    }
+    active->fe_elem_off = active->fe_sector->fs_size;
+}
+
+/*
+ * FCB refuses a newest sector in which the length of a record is torn: it points behind the sector. FCB has found all
+ * sectors by then, so the sector is closed and its records stay.
+ * FCB begins an empty log in the first sector. A worn one is left out.
+ */
+static bool open_fcb(uint32_t count, uint32_t sound, bool empty) {
+    int status = -EIO;
+    for (uint32_t first = 0u; (first < sound) && (status == -EIO); first++) {
+        log_buffer = (struct fcb){.f_magic = LOG_MAGIC,
+                                  .f_version = (uint8_t)count,
+                                  .f_sectors = &sectors[first],
+                                  .f_sector_cnt = (uint8_t)(sound - first)};
+        status = fcb_init(LOG_AREA, &log_buffer);
+        if ((status == -EIO) && (log_buffer.f_active.fe_sector != NULL)) {
+            leave_sector();
+            status = 0;
+        }
+        if (!empty) {
+            break;
+        }
+    }
+    return status == 0;
+}
+
+/* FCB compares identifiers as signed numbers, and takes 7FFFh for newer than 8000h. Then the newest sector is closed. */
+static void correct_newest(off_t newest, uint16_t id) {
+    for (uint32_t i = 0u; (log_buffer.f_active_id != id) && (i < log_buffer.f_sector_cnt); i++) {
+        struct flash_sector *const sector = &log_buffer.f_sectors[i];
+        if (sector->fs_off == newest) {
+            log_buffer.f_active = (struct fcb_entry){.fe_sector = sector, .fe_elem_off = sector->fs_size};
+            log_buffer.f_active_id = id;
+            log_buffer.f_oldest = sector_after(sector);
+        }
+    }
+}
+
 volatile bool zephyr_log_is_read;
 
 static zephyr_hal_log_t begin_fcb(const struct flash_area *area, uint32_t count, bool repair, bool *all) {
@@ -144,10 +206,16 @@ static zephyr_hal_log_t begin_fcb(const struct flash_area *area, uint32_t count,
     if (is_foreign(states, count)) {
         return ZEPHYR_HAL_LOG_FOREIGN;
     }
+    const uint32_t newest = find_newest(states, count);
+    const off_t begins = (newest != count) ? sectors[newest].fs_off : 0;
     const uint32_t sound = keep_sound(area, states, count, repair, all);
-    log_buffer = (struct fcb){
-        .f_magic = LOG_MAGIC, .f_version = (uint8_t)count, .f_sectors = sectors, .f_sector_cnt = (uint8_t)sound};
-    return ((sound > 0u) && (fcb_init(LOG_AREA, &log_buffer) == 0)) ? ZEPHYR_HAL_LOG_READY : ZEPHYR_HAL_LOG_FAILED;
+    if (!open_fcb(count, sound, newest == count)) {
+        return ZEPHYR_HAL_LOG_FAILED;
+    }
+    if (newest != count) {
+        correct_newest(begins, states[newest].id);
+    }
+    return ZEPHYR_HAL_LOG_READY;
 }
 
 static void open_log(hal_t *hal, bool repair) {
@@ -221,16 +289,25 @@ static bool write_padded(struct fcb_entry place, const void *record, size_t size
     return flash_area_write(area, FCB_ENTRY_FA_DATA_OFF(place), padded, ROUND_UP(size, flash_area_align(area))) == 0;
 }
 
+static int find_room(size_t size, struct fcb_entry *place) {
+    int status = fcb_append(&log_buffer, (uint16_t)size, place);
+    if (status == -ENOSPC) {
+        status = fcb_rotate(&log_buffer);
+        status = (status == 0) ? fcb_append(&log_buffer, (uint16_t)size, place) : status;
+    }
+    return status;
+}
+
 bool hal_store_append(hal_t *hal, const void *record, size_t size) {
     struct fcb_entry place;
     if ((size == 0u) || (size > HAL_STORE_RECORD_SIZE_MAX) || !ready(hal)) {
         return false;
     }
     zephyr_log_is_read = true; /* the driver reads what it writes to, and fcb_append_finish() the record */
-    int status = fcb_append(&log_buffer, (uint16_t)size, &place);
-    if (status == -ENOSPC) {
-        status = fcb_rotate(&log_buffer);
-        status = (status == 0) ? fcb_append(&log_buffer, (uint16_t)size, &place) : status;
+    int status = find_room(size, &place);
+    for (uint32_t i = 0u; (i < SECTORS_LEFT_MAX) && (status == -EIO); i++) {
+        leave_sector();
+        status = find_room(size, &place);
     }
     const bool stored =
         (status == 0) && write_padded(place, record, size) && (fcb_append_finish(&log_buffer, &place) == 0);
@@ -238,12 +315,39 @@ bool hal_store_append(hal_t *hal, const void *record, size_t size) {
     return stored;
 }
 
+static bool copy_record(struct fcb_entry place, void *record, size_t size) {
+    const size_t end = place.fe_data_off + ROUND_UP(place.fe_data_len, log_buffer.f_align);
+    const size_t copied = MIN(size, place.fe_data_len);
+    return (end < place.fe_sector->fs_size) &&
+           (flash_area_read(log_buffer.fap, FCB_ENTRY_FA_DATA_OFF(place), record, copied) == 0);
+}
+
+/*
+ * FCB reports a record that it could not read, because of a torn length or of the flash, as the next one, and never goes
+ * on from there: the rest of its sector is left out.
+ */
+static bool read_next(struct fcb_entry *place, void *record, size_t size) {
+    for (uint32_t i = 0u; i <= log_buffer.f_sector_cnt; i++) {
+        const struct fcb_entry last = *place;
+        if (fcb_getnext(&log_buffer, place) != 0) {
+            return false;
+        }
+        const bool moved = (place->fe_sector != last.fe_sector) || (place->fe_elem_off != last.fe_elem_off);
+        if (moved && copy_record(*place, record, size)) {
+            return true;
+        }
+        if (place->fe_sector == log_buffer.f_active.fe_sector) {
+            return false;
+        }
+        *place = (struct fcb_entry){.fe_sector = sector_after(place->fe_sector)};
+    }
+    return false;
+}
+
 size_t zephyr_hal_log_next(hal_t *hal, zephyr_hal_log_cursor_t *cursor, void *record, size_t size) {
     struct fcb_entry *const place = &cursor->place;
     zephyr_log_is_read = true;
-    bool found = (hal->log == ZEPHYR_HAL_LOG_READY) && (fcb_getnext(&log_buffer, place) == 0);
-    const size_t copied = found ? MIN(size, place->fe_data_len) : 0u;
-    found = found && (flash_area_read(log_buffer.fap, FCB_ENTRY_FA_DATA_OFF((*place)), record, copied) == 0);
+    const bool found = (hal->log == ZEPHYR_HAL_LOG_READY) && read_next(place, record, size);
     zephyr_log_is_read = false;
     return found ? place->fe_data_len : 0u;
 }

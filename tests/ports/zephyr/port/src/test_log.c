@@ -1,4 +1,4 @@
-/* The log in flash, on the flash simulator: kept and dropped records, and a power cut at every write. */
+/* The log in flash, on the flash simulator: kept and dropped records, a power cut at every write, and worn cells. */
 #include <string.h>
 
 #include <zephyr/device.h>
@@ -9,7 +9,7 @@
 
 #include "fixture.h"
 
-enum { RECORD = 108 }; /* as large as an event of the recorder */
+enum { RECORD = 108, LONG_RECORD = 200 }; /* about as large as an event of the recorder; with a length of two bytes */
 
 static uint32_t *writes_so_far;
 static uint32_t *writes_until_the_cut;
@@ -24,6 +24,17 @@ static size_t size;
 static size_t sector;
 static uint8_t before_it[FLASH_MAX];
 static uint8_t after_it[FLASH_MAX];
+
+/* In every file, in place of Zephyr's function: a byte that cannot be written. */
+enum { NONE = -1 };
+static off_t worn = NONE;
+int __real_flash_area_write(const struct flash_area *area, off_t at, const void *from, size_t bytes);
+int __wrap_flash_area_write(const struct flash_area *area, off_t at, const void *from, size_t bytes);
+
+int __wrap_flash_area_write(const struct flash_area *area, off_t at, const void *from, size_t bytes) {
+    const bool hit = (worn >= at) && (worn < (at + (off_t)bytes));
+    return hit ? -EIO : __real_flash_area_write(area, at, from, bytes);
+}
 
 static int find(struct stats_hdr *head, void *unused, const char *name, uint16_t offset) {
     static const struct {
@@ -68,7 +79,11 @@ static void power_is_back(void) {
     (void)fixture_begin();
 }
 
+static size_t record_size = RECORD;
+
 static void before(void *unused) {
+    record_size = RECORD;
+    worn = NONE;
     fixture_before(unused);
     erase_all();
     power_is_back();
@@ -77,10 +92,10 @@ static void before(void *unused) {
 ZTEST_SUITE(port_log, NULL, setup, before, fixture_after, NULL);
 
 static bool append(uint32_t number) {
-    uint8_t record[RECORD];
+    uint8_t record[LONG_RECORD];
     (void)memset(record, (int)(number & 0xFFu), sizeof record);
     (void)memcpy(record, &number, sizeof number);
-    return hal_store_append(&hal, record, sizeof record);
+    return hal_store_append(&hal, record, record_size);
 }
 
 /*
@@ -90,11 +105,11 @@ static bool append(uint32_t number) {
 
 /* The number in a record; UINT32_MAX: no record, TORN: a torn one. */
 static uint32_t number_at(uint32_t index) {
-    uint8_t record[RECORD] = {0};
+    uint8_t record[LONG_RECORD] = {0};
     uint32_t number = UINT32_MAX;
-    if (hal_store_read_record(&hal, index, record, sizeof record) == sizeof record) {
+    if (hal_store_read_record(&hal, index, record, sizeof record) == record_size) {
         (void)memcpy(&number, record, sizeof number);
-        for (size_t i = sizeof number; i < sizeof record; i++) {
+        for (size_t i = sizeof number; i < record_size; i++) {
             number = (record[i] == (uint8_t)number) ? number : TORN;
         }
     }
@@ -102,8 +117,10 @@ static uint32_t number_at(uint32_t index) {
 }
 
 static uint32_t count(void) {
+    zephyr_hal_log_cursor_t cursor = {0};
+    uint8_t record[LONG_RECORD];
     uint32_t records = 0u;
-    while (number_at(records) != UINT32_MAX) {
+    while (zephyr_hal_log_next(&hal, &cursor, record, sizeof record) == record_size) {
         records++;
     }
     return records;
@@ -176,8 +193,7 @@ static void cut_this_append(uint32_t number, uint32_t nth, uint32_t bytes) {
 }
 
 /* For every record, from an empty log until each sector was reused, in each of its writes. */
-/* Shows: INT-3 */
-ZTEST(port_log, test_a_power_cut_in_every_write) {
+static void cut_every_write(void) {
     static const uint32_t bytes[] = {0u, 4u, 1u, 2u, 3u, 5u, 6u, 7u, 8u, 9u, 10u, 24u, 38u, 52u, 66u, 80u, 94u, RECORD};
     const uint32_t erased = *erases_so_far;
     uint32_t cuts = 0u;
@@ -200,6 +216,132 @@ ZTEST(port_log, test_a_power_cut_in_every_write) {
         put_back();
         cuts += *erases_so_far - erases; /* erased when the copy was restored */
     }
+}
+
+/* Shows: INT-3 */
+ZTEST(port_log, test_a_power_cut_in_every_write) {
+    cut_every_write();
+}
+
+/* Shows: INT-3 */
+ZTEST(port_log, test_a_power_cut_in_every_write_of_long_records) {
+    record_size = LONG_RECORD;
+    cut_every_write();
+}
+
+/* The records up to `newest` are there without a gap, at least so many. */
+static void assert_kept(uint32_t newest, uint32_t least, const char *what) {
+    const uint32_t kept = count();
+    zassert_true(kept >= least, "%s, record %u: %u records", what, newest, kept);
+    for (uint32_t i = 0u; i < kept; i++) {
+        zassert_equal(number_at(i), newest + 1u - kept + i, "%s, record %u: %u at %u", what, newest, number_at(i), i);
+    }
+}
+
+/* Where the length of the next record is written. */
+static size_t place_of_the_next(uint32_t number) {
+    size_t place = 0u;
+    (void)memcpy(before_it, flash, size);
+    zassert_true(append(number));
+    while (flash[place] == before_it[place]) {
+        place++;
+    }
+    put_back();
+    return place;
+}
+
+/* The length 108 is the byte 6Ch. Torn, it still has bit 7, and so a second byte, which is erased. */
+/* Shows: INT-3 */
+ZTEST(port_log, test_a_torn_length_loses_one_record_only) {
+    static const uint8_t torn[] = {0xEC, 0xFE, 0xED, 0xFD};
+    for (size_t i = 0u; i < ARRAY_SIZE(torn); i++) {
+        erase_all();
+        power_is_back();
+        for (uint32_t number = 0u; number < 5u; number++) {
+            zassert_true(append(number));
+        }
+        flash[place_of_the_next(5u)] = torn[i];
+        power_is_back();
+        zassert_equal(hal.log, ZEPHYR_HAL_LOG_READY);
+        assert_kept(4u, 5u, "torn");
+        for (uint32_t number = 5u; number < 200u; number++) {
+            zassert_true(append(number));
+            if ((number % 7u) == 0u) {
+                assert_kept(number, 5u, "after it");
+            }
+        }
+    }
+}
+
+static void assert_that_all_are_stored(off_t cell, const char *what) {
+    worn = cell;
+    for (uint32_t number = 5u; number < 205u; number++) {
+        zassert_true(append(number), "%s: record %u", what, number);
+        if ((number % 7u) == 0u) {
+            power_is_back();
+            assert_kept(number, 5u, what);
+        }
+    }
+}
+
+/* Shows: INT-3 */
+ZTEST(port_log, test_a_worn_cell_of_a_length_or_a_header_ends_no_log) {
+    for (uint32_t i = 0u; i <= (uint32_t)CONFIG_AGV_LOG_SECTORS; i++) {
+        erase_all();
+        worn = NONE;
+        power_is_back();
+        for (uint32_t number = 0u; number < 5u; number++) {
+            zassert_true(append(number));
+        }
+        if (i < (uint32_t)CONFIG_AGV_LOG_SECTORS) {
+            assert_that_all_are_stored((off_t)(i * sector), "header");
+        } else {
+            assert_that_all_are_stored((off_t)place_of_the_next(5u), "length");
+        }
+    }
+}
+
+/* Shows: INT-3 */
+ZTEST(port_log, test_an_empty_log_begins_behind_a_worn_header) {
+    erase_all();
+    worn = 0;
+    power_is_back();
+    zassert_equal(hal.log, ZEPHYR_HAL_LOG_READY);
+    for (uint32_t number = 0u; number < 5u; number++) {
+        zassert_true(append(number));
+    }
+    power_is_back();
+    assert_kept(4u, 5u, "begun");
+    assert_that_all_are_stored(0, "first header");
+}
+
+/* From a sector of this number on: with a reset after each record, each record is kept for as long as without. */
+static void go_on_from_sector(uint16_t number) {
+    erase_all();
+    power_is_back();
+    flash[6] = (uint8_t)number;
+    flash[7] = (uint8_t)(number >> 8u);
+    power_is_back();
+    for (uint32_t record = 0u; record < 250u; record++) {
+        zassert_true(append(record), "from sector %04x, record %u", number, record);
+        const uint32_t kept = count();
+        power_is_back();
+        zassert_equal(count(), kept, "from sector %04x, record %u", number, record);
+        if ((record % 7u) == 0u) {
+            assert_kept(record, kept, "from this sector");
+        }
+    }
+}
+
+/* Shows: INT-3 */
+ZTEST(port_log, test_the_numbers_of_sectors_wrap) {
+    go_on_from_sector(0xFFFEu);
+}
+
+/* FCB compares the numbers of sectors as signed ones. */
+/* Shows: INT-3 */
+ZTEST(port_log, test_the_numbers_of_sectors_pass_the_half) {
+    go_on_from_sector(0x7FFEu);
 }
 
 /* Possible content of a sector after an interrupted erase. */
@@ -229,6 +371,24 @@ static void assert_that_it_goes_on(uint32_t newest, uint32_t way) {
     zassert_true(hal.log_is_whole, "way %u: a sector is lost", way);
     power_is_back();
     zassert_equal(number_at(count() - 1u), newest + 40u, "way %u", way);
+}
+
+/* The header of the second sector is worn, so the record behind the first sector is in the third one. */
+/* Shows: INT-3 */
+ZTEST(port_log, test_a_power_cut_during_an_erase_behind_a_worn_header) {
+    uint32_t number = 0u;
+    worn = (off_t)sector;
+    for (uint32_t rounds = 0u; rounds < 3u; number++) {
+        (void)memcpy(before_it, flash, size);
+        zassert_true(append(number));
+        rounds += (flash[(2u * sector) + 6u] != before_it[(2u * sector) + 6u]) ? 1u : 0u; /* its identifier */
+    }
+    for (uint32_t way = 0u; way < 3u; way++) {
+        (void)memcpy(flash, before_it, size);
+        tear(&flash[2u * sector], way);
+        power_is_back();
+        assert_that_it_goes_on(number - 2u, way);
+    }
 }
 
 /* For each sector in turn, as the log goes around. */
