@@ -67,7 +67,7 @@ typedef struct {
     uint8_t checked_in;       /**< activities that have checked in since the watchdog was fed (TIM-3) */
     int8_t led_code;          /**< LED code of agv_fault_monitor_shown */
     bool stalled;             /**< at the last tick a frame had waited for longer than tx_stalled_ms */
-    bool stall_begins;        /**< that tick was the first one */
+    bool stall_begins;        /**< the stall has begun, and its frames were not withdrawn yet */
 } agv_core_t;
 
 _Static_assert(sizeof(agv_core_t) <= AGV_SUPERVISOR_MEMORY, "the core does not fit: raise AGV_SUPERVISOR_MEMORY");

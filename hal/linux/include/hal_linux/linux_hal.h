@@ -51,7 +51,7 @@ typedef struct {
 typedef struct {
     hal_can_frame_t frame;
     uint64_t taken_us; /**< when hal_can_send() took it */
-    uint64_t since_us; /**< when the first frame was taken in whose place it waits; its own time if there was none */
+    uint64_t since_us; /**< from when its age counts: taken_us of the first frame that it replaced, or its own */
 } linux_hal_waiting_t;
 
 /** One side. */

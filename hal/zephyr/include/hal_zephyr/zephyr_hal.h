@@ -76,7 +76,7 @@ typedef struct {
 typedef struct {
     hal_can_frame_t frame;
     uint32_t taken_ms; /**< when hal_can_send() took it */
-    uint32_t since_ms; /**< when the first frame was taken in whose place it waits; its own time if there was none */
+    uint32_t since_ms; /**< from when its age counts: taken_ms of the first frame that it replaced, or its own */
 } zephyr_hal_waiting_t;
 
 /** One controller. Only the port uses the members. */
