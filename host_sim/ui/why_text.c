@@ -190,6 +190,9 @@ static void print_fault(const why_fault_t *fault, const widths_t *widths, bool i
     } else {
         /* nothing more to say */
     }
+    if (fault->left_out > 0u) {
+        text_add(&text, "  %u more event%s left out", (unsigned)fault->left_out, words_plural(fault->left_out));
+    }
     why_text_line(is_first ? "faults" : "", WHY_TEXT_LABEL, text.bytes);
 }
 

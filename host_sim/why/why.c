@@ -331,6 +331,7 @@ static void on_fault(why_t *why, const agv_event_t *event, uint64_t t_us) {
     } else {
         end_fault(why, (agv_fault_t)event->a, t_us);
     }
+    why->faults[event->a].left_out += why->is_recorder ? event->left_out : 0u;
 }
 
 void why_event(void *ctx, const session_event_t *event) {

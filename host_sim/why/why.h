@@ -84,6 +84,7 @@ typedef struct {
     uint64_t trip_us;   /**< when it was first of the class that trips; WHY_NEVER */
     uint64_t active_us; /**< in all */
     uint32_t times;
+    uint32_t left_out;   /**< further events of it that a flight recorder did not keep (INT-3) */
     bool active;         /**< at the end */
     bool in_init;        /**< in INIT only, where nothing but an unresettable fault trips */
     bool from_recording; /**< as in why_trip_t, each time */

@@ -154,6 +154,16 @@ class Recorder(hostsim.Case):
         self.events = self.events[4:]
         self.assertIn("of its clock; its start was overwritten\n", self.recorder(self.dump()))
 
+    def test_events_that_were_left_out_are_counted(self):
+        def edit(frame):  # on and off 20 times in 2 s, and once more 1 s later: 4 events a second are kept
+            is_flapping = 3000 <= frame.t_ms < 5000 and frame.t_ms % 100 < 50
+            if frame.name == "vehicle_status" and (is_flapping or 6000 <= frame.t_ms < 6050):
+                frame.data = frame.data[:5] + b"\x01" + frame.data[6:]
+            return frame
+        self.write("x.log", traffic.log(traffic.frames(7000, engage_ms=1000, edit=edit)))
+        self.run_good("replay", "--store", "flapping", "x.log")
+        self.assertIn("  5 times   0.250 s  32 more events left out\n", self.run_good("recorder", "flapping").stdout)
+
     def test_the_report_the_trace_and_the_events(self):
         self.recorder(self.dump(), "--report", "r.html", "--trace", "t.json", "--events", "e.jsonl")
         self.assertIn("STEERING_COMMAND_TIMEOUT", self.read("r.html"))
