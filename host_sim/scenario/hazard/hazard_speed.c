@@ -31,9 +31,10 @@ static int32_t vcu_speed_mm_s(const hazard_t *hazard) {
     return (int32_t)(((uint32_t)status.speed_m_per_h * MM_PER_M) / S_PER_H);
 }
 
-/** 363h reports a speed at which 101h, which reports none, cannot be right. */
+/** 101h reports standstill, and 363h a speed at which that cannot be right. */
 static bool is_contradicted(const hazard_t *hazard) {
-    return is_fresh(hazard, AGV_MSG_VEHICLE_STATUS, hazard->config->vcu_heartbeat_timeout_ms) &&
+    return is_fresh(hazard, AGV_MSG_WHEEL_SPEED, FRESH_MS) && wheels_are_below(hazard, STANDS_MM_S) &&
+           is_fresh(hazard, AGV_MSG_VEHICLE_STATUS, hazard->config->vcu_heartbeat_timeout_ms) &&
            (vcu_speed_mm_s(hazard) > (int32_t)DIFFERS_MM_S);
 }
 
@@ -46,7 +47,7 @@ static void follow_contradiction(hazard_t *hazard) {
     const int32_t full_ms = (int32_t)hazard->config->speed_implausible_ms;
     int32_t *spent_ms = &hazard->contradicted_ms;
 
-    *spent_ms += (wheels_are_below(hazard, STANDS_MM_S) && is_contradicted(hazard)) ? STEP_MS : -STEP_MS;
+    *spent_ms += is_contradicted(hazard) ? STEP_MS : -STEP_MS;
     *spent_ms = (*spent_ms < 0) ? 0 : (*spent_ms > full_ms) ? full_ms : *spent_ms;
 }
 

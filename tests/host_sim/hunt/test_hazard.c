@@ -252,6 +252,11 @@ static const stub_t OVERRIDES_SOON = {
     .gateway = true, .holds = true, .safe_ms = TRIP_MS + 25, .open_ms = TRIP_MS + 130};
 
 #define SOON_PARKS "park: at_standstill\n  park_timeout_ms: 500\n  watchdog_period_ms: 600\n"
+static const stub_t PARKS_LATER = {.rolls = true,
+                                   .safe_ms = TRIP_MS,
+                                   .open_ms = TRIP_MS + 1300,
+                                   .parks_ms = TRIP_MS + 1200,
+                                   .setting = "park: at_standstill\n"};
 static const stub_t PARKS = {.safe_ms = TRIP_MS, .parks_ms = TRIP_MS + 50, .setting = SOON_PARKS};
 
 #define NOT_OBEYED "the vehicle does not obey the safe commands"
@@ -574,6 +579,13 @@ static const struct {
      "  - {at_ms: 2500, ai: drive, gear: D, throttle_pct: 0}\n  - {at_ms: 2500, operator: disengage}\n"},
     {HAZARD_PARK, "P comes in motion",
      &(const stub_t){.gateway = true, .passes = 1u, .setting = "park: at_standstill\n"}, &PASSING, AI_PARKS},
+    /* 363h contradicts a 101h of 0 for 1.7 s, of which 101h is silent for 0.1 s or for 1.1 s */
+    {HAZARD_PARK, "P comes in motion", &PARKS_LATER, NULL,
+     WHEELS_0 "  - {at_ms: 2900, vcu: mute, message: wheel_speed}\n"
+              "  - {at_ms: 3000, vcu: unmute, message: wheel_speed}\n"},
+    {HAZARD_NONE, NULL, NULL, &PARKS_LATER,
+     WHEELS_0 "  - {at_ms: 2900, vcu: mute, message: wheel_speed}\n"
+              "  - {at_ms: 4000, vcu: unmute, message: wheel_speed}\n"},
     /* park_timeout_ms counts from the trip, which a stalled transmitter or a hang may hide; a flipped bit is no trip */
     {HAZARD_PARK, "P comes in motion", &PARKS, NULL, ""},
     {HAZARD_NONE, NULL, NULL, &PARKS,
