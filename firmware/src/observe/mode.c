@@ -9,8 +9,13 @@ enum { ENGAGEMENTS = 3 };
 static const uint8_t engagement_timers[ENGAGEMENTS] = {AGV_TIMER_ENGAGEMENT_1, AGV_TIMER_ENGAGEMENT_2,
                                                        AGV_TIMER_ENGAGEMENT_3};
 
-/* Budget of manual while engaged: more than the frames that end an engagement take. */
+/* Budget of manual while engaged: more than the frames that end an engagement take, also of a slow 363h. */
 enum { FLICKER_MS = 250 };
+
+static uint32_t flicker_ms(const agv_config_t *config) {
+    const uint32_t slow_ms = ((uint32_t)config->mode_frames * config->vcu_heartbeat_timeout_ms) / 2u;
+    return (slow_ms > (uint32_t)FLICKER_MS) ? slow_ms : (uint32_t)FLICKER_MS;
+}
 
 static bool has(const agv_mode_t *mode, uint32_t bit) {
     return (mode->bits & bit) != 0u;
@@ -89,9 +94,11 @@ static bool is_invalid(const agv_timers_t *timers) {
     return agv_timer_reached(timers, AGV_TIMER_BOTH_MODES);
 }
 
-agv_mode_change_t agv_mode_tick(agv_mode_t *mode, agv_timers_t *timers, bool vcu_alive, uint32_t elapsed_ms) {
+agv_mode_change_t agv_mode_tick(agv_mode_t *mode, agv_timers_t *timers, const agv_config_t *config, bool vcu_alive,
+                                uint32_t elapsed_ms) {
     /* manual that never ends the engagement keeps driving from being judged */
-    agv_budget_add(&mode->manual_spent, mode->engaged && (mode->bits == (uint8_t)MANUAL), elapsed_ms, FLICKER_MS);
+    agv_budget_add(&mode->manual_spent, mode->engaged && (mode->bits == (uint8_t)MANUAL), elapsed_ms,
+                   flicker_ms(config));
     reduce_budget(timers, AGV_TIMER_BOTH_MODES, &mode->both_spent, elapsed_ms);
     reduce_budget(timers, AGV_TIMER_NO_MODE, &mode->none_spent, elapsed_ms);
     if (is_invalid(timers)) {

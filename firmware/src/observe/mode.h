@@ -44,7 +44,8 @@ agv_mode_change_t agv_mode_report(agv_mode_t *mode, agv_timers_t *timers, const 
                                   bool vcu_alive, uint32_t time_ms);
 
 /** Add the time since the last tick; end the engagement on MODE_INVALID and on loss of the VCU. Call at every tick. */
-agv_mode_change_t agv_mode_tick(agv_mode_t *mode, agv_timers_t *timers, bool vcu_alive, uint32_t elapsed_ms);
+agv_mode_change_t agv_mode_tick(agv_mode_t *mode, agv_timers_t *timers, const agv_config_t *config, bool vcu_alive,
+                                uint32_t elapsed_ms);
 
 /** Count an engagement that began or continued in STANDBY or ACTIVE. The fourth within mode_flapping_ms trips (SUP-9). */
 void agv_mode_count_engagement(agv_mode_t *mode, agv_timers_t *timers, agv_fault_monitor_t *faults);

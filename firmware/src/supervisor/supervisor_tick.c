@@ -86,13 +86,20 @@ static void observe_hardware(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) 
     agv_reset_button_read(&core->reset_pin, core->hardware.button);
 }
 
+/* A gateway passes no motion command while 363h reports manual: the operator who takes over meets no deadline (TOP-2). */
+static bool expects_commands(const agv_core_t *core) {
+    const bool withholds = agv_core_is_gateway(core) && agv_mode_is_manual(&core->mode);
+    return agv_mode_is_engaged(&core->mode) && !withholds;
+}
+
 static void observe_time(agv_core_t *core, uint32_t elapsed_ms) {
     agv_timers_t *const timers = &core->timers;
     agv_fault_monitor_t *const faults = &core->faults;
     agv_fault_monitor_tick(faults, timers);
     agv_liveness_tick(&core->liveness, timers, agv_mode_is_engaged(&core->mode));
     const bool vcu_alive = agv_liveness_alive(&core->liveness, AGV_NODE_VCU);
-    agv_core_follow_mode(core, agv_mode_tick(&core->mode, timers, vcu_alive, elapsed_ms), timers->now_ms);
+    agv_core_follow_mode(core, agv_mode_tick(&core->mode, timers, &core->config, vcu_alive, elapsed_ms),
+                         timers->now_ms);
     if (!vcu_alive) {
         agv_reset_button_lose(&core->reset_button);
         agv_reset_button_lose(&core->reset_pin);
@@ -101,7 +108,7 @@ static void observe_time(agv_core_t *core, uint32_t elapsed_ms) {
     agv_intrusion_evaluate(&core->intrusion, faults, timers, &core->config, &core->liveness);
     agv_mode_check(&core->mode, timers, faults, &core->config, agv_core_is_supervising(core),
                    agv_vehicle_is_at_standstill(timers));
-    agv_deadlines_tick(faults, timers, &core->config, &core->liveness, agv_mode_is_engaged(&core->mode));
+    agv_deadlines_tick(faults, timers, &core->config, &core->liveness, expects_commands(core));
     const agv_motion_facts_t facts = agv_core_motion_facts(core);
     agv_motion_checks_tick(&core->motion_checks, &facts, elapsed_ms);
     agv_vehicle_doubt_wheels(&core->vehicle, timers, &core->config,

@@ -219,6 +219,34 @@ void test_what_is_not_withheld_meets_its_deadline(void) {
     expect_state(&f, AGV_STATE_ACTIVE);
 }
 
+/* 065h ends at 0, and its deadline is 75 ms. 363h reports manual from 60 ms on, which ends the engagement with the fifth. */
+static void manual_soon_after_the_last_angle(uint16_t topology, uint32_t manual_for_ms) {
+    setUp();
+    f.config.topology = topology;
+    f.config.mode_frames = 5;
+    f.config.steering_command_timeout_ms = 75;
+    fixture_active(&f);
+    fixture_run_past(&f, AGV_MSG_STEERING_COMMAND);
+    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
+    fixture_run(&f, 60);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run(&f, manual_for_ms);
+}
+
+/* The gateway passes no command to the operator who takes over, so it waits for none. Then autopilot returns. */
+/* Shows: TOP-2, SUP-3, STEERING_COMMAND_TIMEOUT */
+void test_while_manual_is_reported_no_command_is_late(void) {
+    manual_soon_after_the_last_angle(AGV_TOPOLOGY_SHARED, 30);
+    expect_tripped(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT);
+    manual_soon_after_the_last_angle(AGV_TOPOLOGY_GATEWAY, 60);
+    expect_state(&f, AGV_STATE_STANDBY);
+    manual_soon_after_the_last_angle(AGV_TOPOLOGY_GATEWAY, 30);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run(&f, 20);
+    expect_tripped(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT);
+}
+
 /* ---- The rest of the envelope ---- */
 
 static uint32_t limited(void) {

@@ -45,7 +45,7 @@ static agv_mode_change_t tick(uint32_t ms) {
     const uint32_t elapsed_ms = ms - ticked_ms;
     advance(ms);
     ticked_ms = ms;
-    return agv_mode_tick(&mode, &timers, true, elapsed_ms);
+    return agv_mode_tick(&mode, &timers, &config, true, elapsed_ms);
 }
 
 /* In time, one each ms. */
@@ -138,9 +138,9 @@ void test_an_engagement_needs_a_vcu_that_is_alive(void) {
     expect_mode(false, false);
     TEST_ASSERT_EQUAL(AGV_MODE_BEGAN, report(ENGAGED, 20));
     TEST_ASSERT_EQUAL(AGV_MODE_SAME, tick(30));
-    TEST_ASSERT_EQUAL(AGV_MODE_ENDED, agv_mode_tick(&mode, &timers, false, 1));
+    TEST_ASSERT_EQUAL(AGV_MODE_ENDED, agv_mode_tick(&mode, &timers, &config, false, 1));
     expect_mode(false, false);
-    TEST_ASSERT_EQUAL(AGV_MODE_SAME, agv_mode_tick(&mode, &timers, false, 1));
+    TEST_ASSERT_EQUAL(AGV_MODE_SAME, agv_mode_tick(&mode, &timers, &config, false, 1));
 }
 
 /* ---- One engagement ---- */
@@ -203,7 +203,7 @@ void test_judged_from_500_ms_on_and_while_the_last_frame_has_the_bit(void) {
     (void)report(ENGAGED, 700);
     (void)tick(1200);
     TEST_ASSERT_TRUE(is_judged());
-    (void)agv_mode_tick(&mode, &timers, false, 0); /* the VCU is lost, and its last frame had the bit */
+    (void)agv_mode_tick(&mode, &timers, &config, false, 0); /* the VCU is lost, and its last frame had the bit */
     TEST_ASSERT_FALSE(is_judged());
 }
 
@@ -361,6 +361,24 @@ void test_manual_may_be_reported_for_250_ms(void) {
     agv_mode_check(&mode, &timers, &faults, &config, true, true);
     TEST_ASSERT_FALSE(is_active(AGV_FAULT_MODE_FLAPPING));
     ticks_to(251);
+    agv_mode_check(&mode, &timers, &faults, &config, true, true);
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_MODE_FLAPPING));
+}
+
+/* Half of mode_frames deadlines of 363h, if that is more than 250 ms: 5 * 189 / 2 ms. */
+/* Shows: SUP-9 */
+TEST_CASE(5, 189, 472)
+TEST_CASE(3, 167, 250)
+TEST_CASE(3, 168, 252)
+void test_a_slow_363h_may_report_manual_for_longer(uint16_t frames, uint16_t deadline_ms, uint32_t limit_ms) {
+    config.mode_frames = frames;
+    config.vcu_heartbeat_timeout_ms = deadline_ms;
+    (void)report(ENGAGED, 0);
+    (void)report(MANUAL, 1);
+    ticks_to(limit_ms);
+    agv_mode_check(&mode, &timers, &faults, &config, true, true);
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_MODE_FLAPPING));
+    ticks_to(limit_ms + 1);
     agv_mode_check(&mode, &timers, &faults, &config, true, true);
     TEST_ASSERT_TRUE(is_active(AGV_FAULT_MODE_FLAPPING));
 }
