@@ -53,7 +53,8 @@ void agv_mode_count_engagement(agv_mode_t *mode, agv_timers_t *timers, agv_fault
 /**
  * Set or end MODE_INVALID and MODE_NONE (SUP-9). Call at every tick. The condition of each must last for its time. A ms
  * without the condition subtracts only half a ms from that time, so that occasional good frames do not hide the fault.
- * Manual that flickers while engaged, and never ends the engagement, is MODE_FLAPPING: driving would not be judged.
+ * Manual that flickers while engaged, and never ends the engagement, is MODE_FLAPPING: driving would not be judged. Its
+ * budget is 250 ms, or half of mode_frames deadlines of 363h if that is more.
  * @param supervising the state is STANDBY or ACTIVE
  */
 void agv_mode_check(agv_mode_t *mode, agv_timers_t *timers, agv_fault_monitor_t *faults, const agv_config_t *config,
