@@ -369,7 +369,7 @@ void test_manual_may_be_reported_for_250_ms(void) {
 /* Shows: SUP-9 */
 TEST_CASE(5, 189, 472)
 TEST_CASE(3, 167, 250)
-TEST_CASE(3, 168, 252)
+TEST_CASE(2, 251, 251)
 void test_a_slow_363h_may_report_manual_for_longer(uint16_t frames, uint16_t deadline_ms, uint32_t limit_ms) {
     config.mode_frames = frames;
     config.vcu_heartbeat_timeout_ms = deadline_ms;
