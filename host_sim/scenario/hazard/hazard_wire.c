@@ -228,6 +228,7 @@ void hazard_wire_status(hazard_t *hazard, agv_message_t message, const hal_can_f
         return;
     }
     note(hazard, message, frame->data);
+    hazard_eps_status(hazard, message, frame->data);
     if (message == AGV_MSG_VEHICLE_STATUS) {
         note_mode(hazard, frame->data[MODE_BYTE]);
         hazard_safe_reported(hazard, frame->data);
@@ -238,7 +239,6 @@ void hazard_wire_status(hazard_t *hazard, agv_message_t message, const hal_can_f
     } else {
         /* noted */
     }
-    hazard_eps_status(hazard, message, frame->data);
     hazard_rows_frame(hazard, message, frame->data);
 }
 

@@ -666,6 +666,26 @@ void test_h2_an_angle_that_was_perhaps_dropped_may_be_taken_anew(void) {
     }
 }
 
+/** With status_invalid_frames of 1 the first valid 067h, at 3141 ms, ends the drop. Then 067h is silent for a moment. */
+void test_h2_the_first_angle_that_is_valid_again_may_be_held(void) {
+    static const unsigned muted_ms[] = {3138, 3145};
+    const stub_t returns = {.safe_ms = TRIP_MS,
+                            .open_ms = TRIP_MS + 300,
+                            .holds = true,
+                            .hold_ms = TRIP_MS + 225,
+                            .setting = "status_invalid_frames: 1\n"};
+
+    for (unsigned i = 0; i < 2u; i++) {
+        const char *const steps = with("  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
+                                       "  - {at_ms: 3110, eps: set, field: angle, value: FFFFh, frames: 3}\n"
+                                       "  - {at_ms: %u, eps: mute, message: steering_status}\n"
+                                       "  - {at_ms: 3145, ai: drive, gear: D, throttle_pct: 60, steer_deg: -60}\n"
+                                       "  - {at_ms: 3220, ai: mute, message: steering_command}\n",
+                                       muted_ms[i]);
+        expect_another_angle(i == 0u, &returns, steps);
+    }
+}
+
 /** The supervisor steers to another angle, and a step before the AI computer turns the wheel makes no hazard of it. */
 static void expect_excused(const char *unexcused, const char *excuse, unsigned turned_ms) {
     const stub_t holds = {
