@@ -14,7 +14,7 @@
 
 /**
  * Evaluate all deadlines and heartbeats. Call at every tick, after agv_liveness_tick.
- * @param engaged commands are expected: their deadlines count
+ * @param engaged the AI computer has to send commands: their deadlines count
  */
 void agv_deadlines_tick(agv_fault_monitor_t *faults, const agv_timers_t *timers, const agv_config_t *config,
                         const agv_liveness_t *liveness, bool engaged);

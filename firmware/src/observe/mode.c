@@ -9,7 +9,7 @@ enum { ENGAGEMENTS = 3 };
 static const uint8_t engagement_timers[ENGAGEMENTS] = {AGV_TIMER_ENGAGEMENT_1, AGV_TIMER_ENGAGEMENT_2,
                                                        AGV_TIMER_ENGAGEMENT_3};
 
-/* Budget of manual while engaged: more than the frames that end an engagement take, also of a slow 363h. */
+/* Budget of manual while engaged: longer than an engagement takes to end, also with a slow 363h. */
 enum { FLICKER_MS = 250 };
 
 static uint32_t flicker_ms(const agv_config_t *config) {

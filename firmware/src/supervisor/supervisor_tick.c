@@ -86,10 +86,11 @@ static void observe_hardware(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) 
     agv_reset_button_read(&core->reset_pin, core->hardware.button);
 }
 
-/* A gateway passes no motion command while 363h reports manual: the operator who takes over meets no deadline (TOP-2). */
+/* A gateway expects no command while the last 363h reports manual alone: an operator may be taking over (TOP-2). */
 static bool expects_commands(const agv_core_t *core) {
-    const bool withholds = agv_core_is_gateway(core) && agv_mode_is_manual(&core->mode);
-    return agv_mode_is_engaged(&core->mode) && !withholds;
+    const agv_mode_t *const mode = &core->mode;
+    const bool is_handed_over = agv_mode_is_manual(mode) && !agv_mode_is_ambiguous(mode);
+    return agv_mode_is_engaged(mode) && !(agv_core_is_gateway(core) && is_handed_over);
 }
 
 static void observe_time(agv_core_t *core, uint32_t elapsed_ms) {

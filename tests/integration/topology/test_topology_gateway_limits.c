@@ -233,7 +233,7 @@ static void manual_soon_after_the_last_angle(uint16_t topology, uint32_t manual_
     fixture_run(&f, manual_for_ms);
 }
 
-/* The gateway passes no command to the operator who takes over, so it waits for none. Then autopilot returns. */
+/* The gateway passes no command to an operator who takes over, so it expects none. Then autopilot or both bits follow. */
 /* Shows: TOP-2, SUP-3, STEERING_COMMAND_TIMEOUT */
 void test_while_manual_is_reported_no_command_is_late(void) {
     manual_soon_after_the_last_angle(AGV_TOPOLOGY_SHARED, 30);
@@ -243,6 +243,10 @@ void test_while_manual_is_reported_no_command_is_late(void) {
     manual_soon_after_the_last_angle(AGV_TOPOLOGY_GATEWAY, 30);
     expect_state(&f, AGV_STATE_ACTIVE);
     fixture_mode(&f, MODE_ENGAGED);
+    fixture_run(&f, 20);
+    expect_tripped(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT);
+    manual_soon_after_the_last_angle(AGV_TOPOLOGY_GATEWAY, 30);
+    fixture_mode(&f, MODE_BOTH);
     fixture_run(&f, 20);
     expect_tripped(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT);
 }
