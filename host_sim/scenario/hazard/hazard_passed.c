@@ -88,13 +88,12 @@ bool hazard_is_stalled(const hazard_t *hazard) {
 
 /**
  * A command on the vehicle side is followed by the safe ones at once, if they leave the controller. A supervisor that hangs sends
- * them when it runs again, after the period of its watchdog at the latest.
+ * them, or opens the output, when it runs again, after the period of its watchdog at the latest.
  */
 static uint32_t answer_ms(const hazard_t *hazard) {
-    const uint32_t step_ms = (hazard->config->watchdog_period_ms > (uint32_t)MARGIN_MS)
-                                 ? hazard->config->watchdog_period_ms
-                                 : (uint32_t)MARGIN_MS;
-    return (uint32_t)ANSWER_MS + (hazard_is_stalled(hazard) ? hazard->config->tx_stalled_ms : step_ms);
+    const uint32_t hang_ms = hazard->config->watchdog_period_ms;
+    const uint32_t stall_ms = hazard_is_stalled(hazard) ? hazard->config->tx_stalled_ms : (uint32_t)MARGIN_MS;
+    return (uint32_t)ANSWER_MS + ((hang_ms > stall_ms) ? hang_ms : stall_ms);
 }
 
 /** The safe commands follow a 065h of theirs; where they are stalled, the output opens. */

@@ -250,6 +250,17 @@ void hazard_rows_frame(hazard_t *hazard, agv_message_t message, const uint8_t da
     }
 }
 
+/** Of a command, each engagement begins the deadline anew (SUP-3); not the one that is too many in mode_flapping_ms. */
+static uint64_t silent_since_ms(const hazard_t *hazard, const row_t *row) {
+    const hazard_message_t *seen = &hazard->messages[row->message];
+    const hazard_mode_t *mode = &hazard->mode;
+
+    if ((uint32_t)row->message >= AGV_COMMAND_COUNT) {
+        return seen->seen_ms;
+    }
+    return (mode->graced && (seen->valid_ms < mode->engaged_ms)) ? mode->engaged_ms : seen->valid_ms;
+}
+
 static bool holds(const hazard_t *hazard, unsigned r) {
     const row_t *row = &ROWS[r];
     const hazard_message_t *seen = &hazard->messages[(row->form == LEVEL) ? 0 : row->message];
@@ -257,8 +268,7 @@ static bool holds(const hazard_t *hazard, unsigned r) {
 
     switch (row->form) {
     case SILENT:
-        return hazard->t_ms - (((uint32_t)row->message < AGV_COMMAND_COUNT) ? seen->valid_ms : seen->seen_ms) >
-               limit_ms;
+        return hazard->t_ms - silent_since_ms(hazard, row) > limit_ms;
     case STUCK:
         return hazard->t_ms - seen->changed_ms > limit_ms;
     case SCORE:

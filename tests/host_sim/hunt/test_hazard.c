@@ -238,6 +238,11 @@ static const stub_t RESETS_LATER = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .se
 static const stub_t TRIPS_AGAIN = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .again_ms = 6300};
 static const stub_t OPENS_LATE = {
     .gateway = true, .passes = 1u, .open_ms = TRIP_MS + 450, .setting = "tx_stalled_ms: 500\n"};
+static const stub_t LATE_GEAR = {.setting = "gear_command_timeout_ms: 2000\n"};
+static const stub_t HANGS_AND_OPENS = {
+    .gateway = true, .passes = 1u, .open_ms = TRIP_MS + 600, .setting = "watchdog_period_ms: 600\n"};
+static const stub_t HANGS_AND_OPENS_LATE = {
+    .gateway = true, .passes = 1u, .open_ms = TRIP_MS + 800, .setting = "watchdog_period_ms: 600\n"};
 static const stub_t STEERS_LATE = {
     .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 10, .holds = true, .hold_ddeg = -300, .hold_ms = TRIP_MS + 190};
 static const stub_t STEERS_ONCE = {.safe_ms = TRIP_MS,
@@ -290,6 +295,7 @@ static const stub_t PARKS = {.safe_ms = TRIP_MS, .parks_ms = TRIP_MS + 50, .sett
     "  - {at_ms: 2700, operator: press, button: 1}\n"
 #define TX_DEAD "  - {at_ms: 3000, supervisor: stall_tx}\n"
 #define FALSE_PARK "  - {at_ms: 3000, vcu: set, field: gear, value: 08h}\n"
+#define NO_GEAR "  - {at_ms: 2000, ai: mute, message: gear_command}\n"
 #define FLOOD                                                                                                          \
     "  - {at_ms: 3000, ai: send_every, message: turn_signal_command, every_ms: 1}\n"                                   \
     "  - {at_ms: 3200, ai: send_every, message: turn_signal_command, every_ms: 100}\n"
@@ -379,6 +385,9 @@ static const struct {
      &(const stub_t){.gateway = true, .passes = 1u, .setting = "tx_stalled_ms: 500\n"}, &OPENS_LATE,
      "  - {at_ms: 2990, supervisor: stall_tx}\n" ROGUE_THROTTLE},
     {HAZARD_FALSE_COMMAND, NOT_OVERRIDDEN, &OPENS_LATE, NULL, ROGUE_THROTTLE},
+    /* a supervisor that hangs with a full queue opens the output when its watchdog ends that */
+    {HAZARD_FALSE_COMMAND, NOT_OVERRIDDEN, &HANGS_AND_OPENS_LATE, &HANGS_AND_OPENS,
+     "  - {at_ms: 2990, supervisor: fill_queue}\n" ROGUE_THROTTLE},
     /* what waited in a transmitter leaves when it is free again */
     {HAZARD_FALSE_COMMAND, NOT_OVERRIDDEN,
      &(const stub_t){
@@ -427,6 +436,14 @@ static const struct {
     {HAZARD_NONE, NULL, NULL, &RESETS, PRESS_1},
     {HAZARD_NONE, NULL, NULL, &RESETS_BY_BOTH, PRESS_PIN},
     {HAZARD_NOT_STOPPING, "the EPS is silent", &MUTE, &GOOD, "  - {at_ms: 3000, eps: freeze_counter}\n"},
+    /* each engagement begins the deadline of a command anew, but not the fourth one within 5 s */
+    {HAZARD_NOT_STOPPING, "168h is missing", &LATE_GEAR, NULL, NO_GEAR},
+    {HAZARD_NOT_STOPPING, "168h is missing", &LATE_GEAR, NULL,
+     NO_GEAR "  - {at_ms: 2500, operator: disengage, again_every_ms: 1200}\n"
+             "  - {at_ms: 2700, operator: engage, again_every_ms: 1200}\n"},
+    {HAZARD_NONE, NULL, NULL, &LATE_GEAR,
+     NO_GEAR "  - {at_ms: 2500, operator: disengage, again_every_ms: 2000}\n"
+             "  - {at_ms: 2700, operator: engage, again_every_ms: 2000}\n"},
     /* what 363h reports of the button counts too: nobody can know better */
     {HAZARD_RESET, NOT_PRESSED, &RESETS_LATER, NULL, PRESS_LOST PRESS_REGAINED},
     {HAZARD_NONE, NULL, NULL, &RESETS_LATER,
