@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Put together the tables of sweep: which instruction of which function each line is, and the places that do harm.
 
-usage: table.py IMAGE TABLE... [--out FILE] [--into PAGE] [--most SHARE]
+usage: table.py IMAGE TABLE... [--out FILE] [--sums PAGE] [--places PAGE] [--most SHARE]
 
 Prints the sums of each window, and the places that did harm (Markdown). --out FILE: all lines, with function, source line and
-instruction. --into PAGE: puts what it prints between the two marks in this page, too. --most SHARE: exit status 1 if more of
-1000 disturbances did harm.
+instruction. --sums PAGE, --places PAGE: puts the one or the other also into this page, between `<!-- IMAGE -->` and
+`<!-- end -->`. --most SHARE: exit status 1 if more of 1000 disturbances did harm.
 """
 import argparse
 import collections
@@ -102,14 +102,14 @@ def page_of_places(lines, texts, places):
                f"{', '.join(sorted(windows))} |")
 
 
-def put_into(page, text):
-    """Between the marks."""
+def put_into(page, image, text):
+    """Between the marks of this image."""
     path = pathlib.Path(page)
-    before, mark, rest = path.read_text(encoding="utf-8").partition("<!-- table.py -->\n")
+    before, mark, rest = path.read_text(encoding="utf-8").partition(f"<!-- {pathlib.Path(image).name} -->\n")
     _, end, after = rest.partition("<!-- end -->\n")
     if not mark or not end:
         sys.exit(f"table: {page} has no marks")
-    path.write_text(f"{before}{mark}\n{text}\n{end}{after}", encoding="utf-8")
+    path.write_text(f"{before}{mark}\n{text}\n\n{end}{after}", encoding="utf-8")
 
 
 def main():
@@ -117,29 +117,33 @@ def main():
     parser.add_argument("image")
     parser.add_argument("tables", nargs="+")
     parser.add_argument("--out")
-    parser.add_argument("--into")
+    parser.add_argument("--sums")
+    parser.add_argument("--places")
     parser.add_argument("--most", type=float, default=1000)
     options = parser.parse_args()
     lines = sorted(read(options.tables))
     if not lines:
         sys.exit("table: no lines")
     texts = instructions(options.image)
-    places = sources(options.image, sorted({line[2] for line in lines}))
+    found_at = sources(options.image, sorted({line[2] for line in lines}))
     if options.out:
         with open(options.out, "w", encoding="utf-8") as out:
             out.write("window\tindex\tpc\tfunction\tsource\tinstruction\tdisturbances\t" + "\t".join(VERDICTS) + "\tharm\n")
             for window, index, pc, faults, counts, harms in lines:
-                out.write("\t".join([window, str(index), f"{pc:x}", *places[pc], texts.get(pc, ""), str(faults),
+                out.write("\t".join([window, str(index), f"{pc:x}", *found_at[pc], texts.get(pc, ""), str(faults),
                                      *map(str, counts), harms]) + "\n")
     sums = sums_of(lines)
     verdicts = sums["all"][2:]
     done = sum(verdicts)
-    text = "\n".join([*page_of_sums(sums), "", *page_of_places(lines, texts, places), ""])
-    if options.into:
-        put_into(options.into, text)
+    page = "\n".join(page_of_sums(sums))
+    places = "\n".join(page_of_places(lines, texts, found_at))
+    if options.sums:
+        put_into(options.sums, options.image, page)
+    if options.places:
+        put_into(options.places, options.image, places)
     share = 1000 * verdicts[3] / done
-    print(f"{text}\n{done} disturbances: {verdicts[0]} same, {verdicts[1]} safe, {verdicts[2]} detected, {verdicts[3]} harmful "
-          f"({share:.2f} of 1000)")
+    print(f"{page}\n\n{places}\n\n{done} disturbances: {verdicts[0]} same, {verdicts[1]} safe, {verdicts[2]} detected, "
+          f"{verdicts[3]} harmful ({share:.2f} of 1000)")
     if share > options.most:
         sys.exit(f"table: more than {options.most} of 1000 did harm")
 
