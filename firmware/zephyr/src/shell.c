@@ -126,10 +126,30 @@ static uint32_t print_ram(const struct shell *shell, print_event_fn *print) {
     return printed;
 }
 
+/* The last trips, which later events do not replace, oldest first. */
+static uint32_t print_trips(const struct shell *shell, print_event_fn *print) {
+    uint32_t printed = 0u;
+    for (uint32_t i = AGV_RECORDER_TRIPS; i > 0u; i--) {
+        agv_event_t trip;
+        k_sched_lock();
+        const bool valid = agv_recorder_get_trip(agv_supervise.ports.recorder, i - 1u, &trip);
+        k_sched_unlock();
+        if (valid) {
+            print(shell, &trip);
+            printed++;
+        }
+    }
+    return printed;
+}
+
 static void print_all(const struct shell *shell, print_event_fn *print) {
     const uint32_t in_flash = print_flash(shell, print);
     const uint32_t in_ram = print_ram(shell, print);
     shell_print(shell, "%u events from flash, %u from RAM; log in flash: %s", in_flash, in_ram, log_text());
+    shell_print(shell, "the last trips:");
+    if (print_trips(shell, print) == 0u) {
+        shell_print(shell, "none");
+    }
 }
 
 static void print_as_text(const struct shell *shell, const agv_event_t *event) {

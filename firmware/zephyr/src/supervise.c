@@ -6,7 +6,7 @@
 #include "events.h"
 #include "kconfig.h"
 
-/* More than fit into the queues at once come only while they are emptied: then the tick goes first. */
+/* The queues hold half as many, so all that came up to the tick is taken. What comes meanwhile must not delay the tick. */
 enum { FRAMES_A_ROUND = 2 * HAL_CAN_SIDES * CONFIG_AGV_CAN_RX_QUEUE };
 
 static const agv_version_t version = {AGV_VERSION_MAJOR, AGV_VERSION_MINOR, AGV_VERSION_PATCH, AGV_REVISION_NUMBER};
@@ -76,26 +76,23 @@ static void count(supervise_t *self, const hal_can_frame_t *frame) {
 #endif
 }
 
-/* Whether the queues were emptied. */
-static bool take_frames(supervise_t *self) {
+static void take_frames(supervise_t *self) {
     hal_can_side_t side;
     hal_can_frame_t frame;
     for (uint32_t i = 0u; i < (uint32_t)FRAMES_A_ROUND; i++) {
         if (!zephyr_hal_receive(&self->hal, &side, &frame)) {
-            return true;
+            return;
         }
         agv_supervisor_frame(&self->supervisor, &self->ports, side, &frame);
         count(self, &frame);
     }
-    return false;
 }
 
 void supervise_once(supervise_t *self) {
     zephyr_hal_wait(&self->hal);
     const uint32_t now_ms = hal_clock_now_ms(&self->hal); /* before the frames: all stamped up to it are handed over */
-    if (take_frames(self)) {
-        agv_supervisor_receive_alive(&self->supervisor);
-    }
+    take_frames(self);
+    agv_supervisor_receive_alive(&self->supervisor);
     if (now_ms != self->ticked_ms) {
         self->ticked_ms = now_ms;
         agv_supervisor_tick(&self->supervisor, &self->ports, now_ms);

@@ -112,6 +112,7 @@ bool linux_can_restart(const linux_can_t *can) {
 }
 
 static void set_link(linux_can_t *can, const linux_can_link_t *link) {
+    can->link_is_known = true;
     can->link_is_up = link->is_up;
     can->link_has_state = link->has_state;
     can->link_state = link->state;
@@ -164,7 +165,7 @@ static void read_reports(linux_can_t *can) {
         }
     }
     if (has_lost) {
-        can->link_is_up = linux_can_ask(can) && can->link_is_up;
+        can->link_is_known = linux_can_ask(can);
     }
 }
 
@@ -174,10 +175,13 @@ bool linux_can_is_up(linux_can_t *can) {
         return false;
     }
     if (!can->has_link) {
-        return open_link(can) && can->link_is_up;
+        return open_link(can) && can->link_is_known && can->link_is_up;
     }
     read_reports(can);
-    return can->link_is_up;
+    if (!can->link_is_known && !can->is_gone) { /* the kernel reports only changes */
+        (void)linux_can_ask(can);
+    }
+    return can->link_is_known && can->link_is_up;
 }
 
 bool linux_can_state(const linux_can_t *can, hal_can_state_t *state) {

@@ -1,8 +1,12 @@
 /* Reading the kernel's messages on interfaces: bytes written by hand from <linux/rtnetlink.h>, as a little-endian computer has
  * them. */
+#include <net/if.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
+#include "hal_linux/linux_can.h"
 #include "linux_can_internal.h"
 #include "unity.h"
 
@@ -171,4 +175,22 @@ void test_a_state_of_another_size_is_none(void) {
     expect_unknown();
     message[STATE_AT] = 12; /* the empty one belongs to it */
     expect_unknown();
+}
+
+/* With one descriptor left, the socket for the changes can be opened, but not the one for the query. lo stands for the
+ * interface. The kernel reports no change of it. */
+void test_a_query_that_failed_is_repeated(void) {
+    linux_can_t can = {.fd = STDIN_FILENO, .index = (int)if_nametoindex("lo")};
+    linux_can_t other = can;
+    struct rlimit limit;
+    TEST_ASSERT_TRUE_MESSAGE(linux_can_is_up(&other), "lo is not up here");
+    const int free_fd = dup(STDIN_FILENO);
+    TEST_ASSERT_EQUAL_INT(0, close(free_fd));
+    TEST_ASSERT_EQUAL_INT(0, getrlimit(RLIMIT_NOFILE, &limit));
+    const struct rlimit one_left = {.rlim_cur = (rlim_t)free_fd + 1u, .rlim_max = limit.rlim_max};
+    TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &one_left));
+    const bool up_at_first = linux_can_is_up(&can);
+    TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &limit));
+    TEST_ASSERT_FALSE(up_at_first);
+    TEST_ASSERT_TRUE(linux_can_is_up(&can));
 }

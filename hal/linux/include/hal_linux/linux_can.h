@@ -38,6 +38,7 @@ typedef struct {
     bool is_gone;               /**< the interface no longer exists */
     bool has_link;              /**< linux_can_is_up() was called */
     int link_fd;                /**< then: the socket on which the kernel reports changes of interfaces */
+    bool link_is_known;         /**< then: the kernel answered the last question, or reported a change since */
     bool link_is_up;            /**< then: the last reported state */
     bool link_has_state;        /**< then: its controller has an error state */
     hal_can_state_t link_state; /**< then: the last reported one */
@@ -85,7 +86,7 @@ linux_can_write_t linux_can_write(linux_can_t *can, const hal_can_frame_t *frame
 /**
  * Whether the interface is up; false also if that is unknown. The first call queries the kernel, which may block while an
  * interface is being changed. Later calls read the changes that the kernel has reported, and query again only if some of
- * these reports were lost (hundreds of changes between two calls).
+ * these reports were lost (hundreds of changes between two calls), or the last query failed.
  */
 bool linux_can_is_up(linux_can_t *can);
 

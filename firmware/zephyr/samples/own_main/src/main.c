@@ -15,24 +15,27 @@ static hal_t hal;
 static agv_supervisor_t supervisor;
 static agv_ports_t ports = {.hal = &hal, .recorder = &recorder};
 
-/* More frames than this do not wait: a bus that never stops must not keep the loop from its tick. */
+/* The queues hold half as many, so all that came up to the tick is taken. What comes meanwhile must not delay the tick. */
 enum { FRAMES_A_ROUND = 2 * HAL_CAN_SIDES * CONFIG_AGV_CAN_RX_QUEUE };
 
-/* Whether the queues were emptied. */
-static bool take_frames(void) {
+static void take_frames(void) {
     hal_can_side_t side;
     hal_can_frame_t frame;
     for (uint32_t i = 0u; i < (uint32_t)FRAMES_A_ROUND; i++) {
         if (!zephyr_hal_receive(&hal, &side, &frame)) {
-            return true;
+            return;
         }
         agv_supervisor_frame(&supervisor, &ports, side, &frame);
     }
-    return false;
 }
 
 int main(void) {
-    const zephyr_hal_config_t wiring = {.bitrate = CONFIG_AGV_CAN_BITRATE,
+    const zephyr_hal_memory_t memory[] = {{.start = &supervisor, .size = sizeof supervisor, .is_kept = false},
+                                          {.start = &recorder, .size = sizeof recorder, .is_kept = true},
+                                          {.start = &retained, .size = sizeof retained, .is_kept = true}};
+    const zephyr_hal_config_t wiring = {.memory = memory,
+                                        .memory_count = ARRAY_SIZE(memory),
+                                        .bitrate = CONFIG_AGV_CAN_BITRATE,
                                         .sample_point_permille = CONFIG_AGV_CAN_SAMPLE_POINT,
                                         .watchdog_ms = CONFIG_AGV_WATCHDOG_PERIOD_MS,
                                         .retained = &retained};
@@ -44,9 +47,8 @@ int main(void) {
     for (int printed = -1;;) {
         zephyr_hal_wait(&hal);
         const uint32_t now_ms = hal_clock_now_ms(&hal); /* before the frames: all stamped up to it are handed over */
-        if (take_frames()) {
-            agv_supervisor_receive_alive(&supervisor);
-        }
+        take_frames();
+        agv_supervisor_receive_alive(&supervisor);
         if (now_ms != ticked_ms) {
             ticked_ms = now_ms;
             agv_supervisor_tick(&supervisor, &ports, now_ms);

@@ -90,6 +90,8 @@ ZTEST(shell_commands, test_the_log_is_that_of_the_flash_in_the_words_of_the_cons
     assert_has(printed, " ms: => STANDBY");
     assert_has(printed, " ms: safety output closed");
     zassert_is_null(strstr(printed, "0 events from flash"), "%s", printed);
+    assert_has(printed, "the last trips:");
+    assert_has(strstr(printed, "the last trips:"), "none");
 }
 
 /* Shows: INT-3 */
