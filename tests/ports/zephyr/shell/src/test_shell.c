@@ -111,3 +111,10 @@ ZTEST(shell_commands, test_the_dump_has_the_bytes_of_each_event) {
 ZTEST(shell_commands, test_without_frames_a_message_has_no_age) {
     assert_has(type("agv messages", 0), "43f turn_signal_command: never received");
 }
+
+/* Shows: INT-3 */
+ZTEST(shell_commands, test_without_frames_the_trip_is_kept) {
+    const char *const trips = strstr(type("agv log", 0), "the last trips:");
+    zassert_not_null(trips);
+    assert_has(trips, "=> TRIPPED");
+}
