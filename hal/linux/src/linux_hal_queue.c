@@ -41,14 +41,21 @@ static linux_can_write_t write_now(linux_hal_side_t *side, const linux_hal_waiti
     return result;
 }
 
-static linux_hal_waiting_t *find_older(linux_hal_side_t *side, const hal_can_frame_t *frame, uint64_t now_us) {
+/* @return since when the identifier waits */
+static uint64_t drop_older(linux_hal_side_t *side, const hal_can_frame_t *frame, uint64_t now_us) {
+    uint64_t since_us = now_us;
+    size_t kept = 0;
     for (size_t i = 0; i < side->waiting_count; i++) {
-        linux_hal_waiting_t *waiting = &side->waiting[i];
+        const linux_hal_waiting_t *waiting = &side->waiting[i];
         if (rank_of(&waiting->frame) == rank_of(frame) && now_us > waiting->taken_us + (uint64_t)TOGETHER_US) {
-            return waiting;
+            since_us = (waiting->since_us < since_us) ? waiting->since_us : since_us;
+        } else {
+            side->waiting[kept] = *waiting;
+            kept++;
         }
     }
-    return NULL;
+    side->waiting_count = kept;
+    return since_us;
 }
 
 /* Insert behind all frames of higher or equal priority, so that of two with the same identifier the older one is sent
@@ -64,18 +71,13 @@ static void insert(linux_hal_side_t *side, const linux_hal_waiting_t *frame) {
 }
 
 bool linux_hal_queue_take(linux_hal_side_t *side, const hal_can_frame_t *frame, uint64_t now_us) {
-    linux_hal_waiting_t *const older = find_older(side, frame, now_us);
-    const linux_hal_waiting_t waiting = {
-        .frame = *frame, .taken_us = now_us, .since_us = older == NULL ? now_us : older->since_us};
     if (!can_be_sent(frame)) {
         return false;
     }
+    const uint64_t since_us = drop_older(side, frame, now_us);
+    const linux_hal_waiting_t waiting = {.frame = *frame, .taken_us = now_us, .since_us = since_us};
     if (!side->in_flight && side->waiting_count == 0) {
         return write_now(side, &waiting, now_us) == LINUX_CAN_TAKEN;
-    }
-    if (older != NULL) {
-        *older = waiting;
-        return true;
     }
     if (side->waiting_count == LINUX_HAL_QUEUE_SIZE) {
         return false;

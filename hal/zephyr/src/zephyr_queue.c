@@ -7,14 +7,21 @@
 /* Frames with one identifier that are given within this time belong together. */
 enum { TOGETHER_MS = 1 };
 
-static zephyr_hal_waiting_t *find_older(zephyr_hal_side_t *side, uint32_t id, uint32_t now_ms) {
+/* @return since when the identifier waits */
+static uint32_t drop_older(zephyr_hal_side_t *side, uint32_t id, uint32_t now_ms) {
+    uint32_t age_ms = 0u;
+    uint32_t kept = 0u;
     for (uint32_t i = 0u; i < side->waiting_count; i++) {
-        zephyr_hal_waiting_t *const waiting = &side->waiting[i];
+        const zephyr_hal_waiting_t *const waiting = &side->waiting[i];
         if ((waiting->frame.id == id) && ((now_ms - waiting->taken_ms) > (uint32_t)TOGETHER_MS)) {
-            return waiting;
+            age_ms = MAX(age_ms, now_ms - waiting->since_ms);
+        } else {
+            side->waiting[kept] = *waiting;
+            kept++;
         }
     }
-    return NULL;
+    side->waiting_count = kept;
+    return now_ms - age_ms;
 }
 
 static bool insert(zephyr_hal_side_t *side, const zephyr_hal_waiting_t *frame) {
@@ -32,14 +39,9 @@ static bool insert(zephyr_hal_side_t *side, const zephyr_hal_waiting_t *frame) {
 }
 
 bool zephyr_queue_put(zephyr_hal_side_t *side, const hal_can_frame_t *frame, uint32_t now_ms) {
-    zephyr_hal_waiting_t *const older = find_older(side, frame->id, now_ms);
-    const zephyr_hal_waiting_t waiting = {
-        .frame = *frame, .taken_ms = now_ms, .since_ms = (older == NULL) ? now_ms : older->since_ms};
-    if (older == NULL) {
-        return insert(side, &waiting);
-    }
-    *older = waiting;
-    return true;
+    const uint32_t since_ms = drop_older(side, frame->id, now_ms);
+    const zephyr_hal_waiting_t waiting = {.frame = *frame, .taken_ms = now_ms, .since_ms = since_ms};
+    return insert(side, &waiting);
 }
 
 void zephyr_queue_put_back(zephyr_hal_side_t *side, const zephyr_hal_waiting_t *taken_back) {

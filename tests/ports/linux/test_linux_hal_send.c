@@ -75,6 +75,7 @@ void test_of_older_frames_with_one_identifier_the_newest_waits_and_is_as_old_as_
     vcan_stick();
     send_numbered(0x10F, 0);
     send_numbered(0x105, 1);
+    send_numbered(0x105, 1); /* together with the one before: both wait, until a later one comes */
     send_numbered(0x106, 2);
     fill_kernel_queue();
     (void)port_drain(&hal); /* 10Fh was sent; the others find no room */

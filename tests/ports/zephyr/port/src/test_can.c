@@ -352,6 +352,7 @@ ZTEST(port_can, test_of_older_frames_with_one_identifier_the_newest_waits_and_is
     (void)send(0x168u, 1u);
     k_msleep(5);
     (void)send(0x065u, 2u);
+    (void)send(0x065u, 2u); /* together with the one before: both wait, until a later one comes */
     for (uint32_t i = 0u; i < ZEPHYR_HAL_QUEUE_SIZE; i++) {
         k_msleep(5);
         zassert_true(send(0x065u, 3u + i));
