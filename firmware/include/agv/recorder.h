@@ -142,7 +142,7 @@ bool agv_recorder_get(const agv_recorder_t *recorder, uint32_t sequence, agv_eve
  */
 bool agv_recorder_get_trip(const agv_recorder_t *recorder, uint32_t index, agv_event_t *event);
 
-/** The oldest valid event that is not in flash yet; NULL if there is none. An event that flash refused is one. */
+/** The oldest valid event that is not in flash yet; NULL if there is none. */
 const agv_event_t *agv_recorder_next_to_store(agv_recorder_t *recorder);
 
 /** Note that the event of agv_recorder_next_to_store was written to flash. */

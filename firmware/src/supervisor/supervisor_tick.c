@@ -148,9 +148,8 @@ static void store_events(agv_core_t *core, const agv_ports_t *ports) {
     const agv_event_t *const event = agv_recorder_next_to_store(ports->recorder);
     if (event != NULL) {
         core->store_credits--;
-        if (hal_store_append(ports->hal, event, sizeof *event)) {
-            agv_recorder_stored(ports->recorder);
-        }
+        (void)hal_store_append(ports->hal, event, sizeof *event);
+        agv_recorder_stored(ports->recorder);
     }
 }
 

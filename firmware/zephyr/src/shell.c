@@ -105,15 +105,16 @@ static uint32_t print_flash(const struct shell *shell, print_event_fn *print) {
     return printed;
 }
 
-/* The events in RAM that are not in flash yet. */
+/* The events in RAM that are not in flash yet. While the log is off, flash has none of them. */
 static uint32_t print_ram(const struct shell *shell, print_event_fn *print) {
     const agv_recorder_t *const recorder = agv_supervise.ports.recorder;
+    const bool log_is_on = agv_supervise.hal.log == ZEPHYR_HAL_LOG_READY;
     uint32_t printed = 0u;
     k_sched_lock();
     const uint32_t next = agv_recorder_next_sequence(recorder);
-    const uint32_t waiting = MIN(next - recorder->stored_sequence, AGV_RECORDER_EVENTS);
+    const uint32_t waiting = next - recorder->stored_sequence;
     k_sched_unlock();
-    for (uint32_t i = waiting; i > 0u; i--) {
+    for (uint32_t i = log_is_on ? MIN(waiting, AGV_RECORDER_EVENTS) : AGV_RECORDER_EVENTS; i > 0u; i--) {
         agv_event_t event;
         k_sched_lock();
         const bool valid = agv_recorder_get(recorder, next - i, &event);

@@ -95,6 +95,15 @@ ZTEST(shell_commands, test_the_log_is_that_of_the_flash_in_the_words_of_the_cons
 }
 
 /* Shows: INT-3 */
+ZTEST(shell_commands, test_with_the_log_off_all_events_come_from_ram) {
+    agv_supervise.hal.log = ZEPHYR_HAL_LOG_FOREIGN;
+    const char *const printed = type("agv log", 0);
+    agv_supervise.hal.log = ZEPHYR_HAL_LOG_READY;
+    assert_has(printed, "\n0 events from flash");
+    assert_has(printed, " ms: => STANDBY");
+}
+
+/* Shows: INT-3 */
 ZTEST(shell_commands, test_the_dump_has_the_bytes_of_each_event) {
     const char *line = type("agv dump", 0);
     assert_has(line, "agv-version test+");
