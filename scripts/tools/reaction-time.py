@@ -231,8 +231,14 @@ def engaged_rows(tables):
     """The rows of faults which an engagement delays, with another name, and what they wait for."""
     rows = {row["fault"]: row for row in tables["rows"]}
     return [{**rows[item["fault"]], "fault": item["fault"] + ENGAGED, "wait": item["wait"],
-             "kind": "never_seen" if item["never_seen"] else rows[item["fault"]]["kind"]}
+             "kind": "never_seen" if item["never_seen"] else rows[item["fault"]]["kind"],
+             "flags": flags_engaged(rows[item["fault"]]["flags"])}
             for item in tables["engagements"]]
+
+
+def flags_engaged(flags):
+    """A gateway waits with gear and throttle, so what needs a gear is caused on the shared bus only."""
+    return flags + ["shared"] if "in_gear" in flags else flags
 
 
 class Derived:

@@ -67,7 +67,7 @@ typedef enum {
     AGV_CONFIG_ID_TWICE,
     AGV_CONFIG_NEEDS_GATEWAY,   /**< `setting` has no effect on a shared bus and is not at its default */
     AGV_CONFIG_PRESS_TOO_SHORT, /**< reset_hold_max_ms is not above reset_hold_ms: no press could reset */
-    AGV_CONFIG_CLASS_FIXED,     /**< the class of `fault` cannot be changed, or cannot on a shared bus */
+    AGV_CONFIG_CLASS_FIXED,     /**< the class of `fault` can never be changed, or not on a shared bus */
     AGV_CONFIG_NO_SUCH_FAULT    /**< `trips` has bits beyond the last fault */
 } agv_config_problem_t;
 

@@ -105,7 +105,10 @@ uint32_t agv_supervisor_tick_ms(const agv_supervisor_t *supervisor);
 /** Whether the safety output is closed (FSM-4). */
 bool agv_supervisor_output_closed(const agv_supervisor_t *supervisor);
 
-/** Whether the vehicle is at standstill: wheels and VCU's speed slow for standstill_ms, 101h fresh, VCU alive. */
+/**
+ * Whether the vehicle is at standstill: the wheels and the VCU's speed have been low for standstill_ms, 101h is fresh, and
+ * the VCU is alive.
+ */
 bool agv_supervisor_is_at_standstill(const agv_supervisor_t *supervisor);
 
 /** What the LED shows (LED-1): 0 = healthy, 1..17 = number of flashes, -1 = fast blinking. */
