@@ -176,7 +176,7 @@ static status_t show_one(uint32_t number) {
         }
         (void)((next < atlas_case_count())
                    ? report("--show: case %" PRIu32 " cannot happen; the next one that can is %" PRIu32, number, next)
-                   : report("--show: case %" PRIu32 " cannot happen, nor one behind it", number));
+                   : report("--show: case %" PRIu32 " cannot happen, nor can any later one", number));
         return STATUS_UNUSABLE;
     }
     text_clear(&text);

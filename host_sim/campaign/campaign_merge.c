@@ -83,10 +83,10 @@ static bool read_run(shard_t *shard, const campaign_part_t *whole, uint64_t run,
     }
     const campaign_row_t *only = whole->causes.only;
     if (whole->causes.newly_engaged && (campaign_engagement(CAMPAIGN_ROWS[sample->row].fault) == NULL)) {
-        return report_at(shard->path, shard->number, "a fault that an engagement does not delay");
+        return report_at(shard->path, shard->number, "its fault cannot occur in a campaign with --newly-engaged");
     }
     return (only == NULL) || (only == &CAMPAIGN_ROWS[sample->row]) ||
-           report_at(shard->path, shard->number, "a fault that is not the one of the campaign");
+           report_at(shard->path, shard->number, "its fault is not that of the campaign (--fault)");
 }
 
 static bool is_same(const campaign_part_t *a, const campaign_part_t *b) {

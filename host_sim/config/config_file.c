@@ -78,7 +78,7 @@ static bool take_number(const reading_t *reading, uint16_t setting, const agv_se
     const char *text = yaml_node_plain(reading->value);
     uint64_t number = 0u;
     if (text == NULL) {
-        return report_key(reading, "a number is written without quotes");
+        return report_key(reading, "write the number without quotes");
     }
     if (!read_value(reading, text, info, &number)) {
         return false;
@@ -196,7 +196,7 @@ bool config_read_mapping(yaml_document_t *document, const yaml_node_t *mapping, 
                                    .line = yaml_node_line(key),
                                    .value = yaml_document_get_node(document, pair->value)};
         good = (reading.key != NULL) ? take_pair(&reading)
-                                     : report_at(lines->path, reading.line, "the name of a setting is a word");
+                                     : report_at(lines->path, reading.line, "the name of a setting must be a word");
     }
     return good;
 }

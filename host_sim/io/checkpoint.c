@@ -38,8 +38,7 @@ static uint32_t checksum_of(const checkpoint_part_t parts[], size_t count) {
 }
 
 bool checkpoint_check_path(const char *path) {
-    return !output_is_stdout(path) ||
-           report("--checkpoint: a checkpoint is read and written, which standard output cannot be");
+    return !output_is_stdout(path) || report("--checkpoint: give a file; standard output cannot be read");
 }
 
 bool checkpoint_may_save(const char *path, output_t *file) {

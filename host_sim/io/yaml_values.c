@@ -206,7 +206,7 @@ static bool read_both(const yaml_reader_t *reader, const yaml_node_t *node, cons
         }
     }
     if (range[0] > range[1]) {
-        return yaml_reader_fail(reader, node, "%s: the first is above the second", what);
+        return yaml_reader_fail(reader, node, "%s: the lowest value is above the highest", what);
     }
     return true;
 }

@@ -135,7 +135,8 @@ bool replay_text_goes_back(text_t *text, const replay_heard_t *heard) {
     }
     text_add(text, "the time stamps go back by ");
     why_words_time(text, heard->back_us);
-    text_add(text, " at line %" PRIu64 ": from there on, earlier lines get the time ", heard->back_line);
+    text_add(text, " at line %" PRIu64 ": from there on, lines with an earlier time stamp get the time ",
+             heard->back_line);
     why_words_time(text, heard->back_at_us);
     text_add(text, "; cut the log there, or sort it");
     return true;

@@ -93,7 +93,7 @@ static status_t make(work_t *work, const skeleton_request_t *request) {
 /** What exists is never replaced, and a log that is read twice is no pipe. @return false: reported */
 static bool check_files(const skeleton_request_t *request) {
     if (strcmp(request->log, "-") == 0) {
-        return report("--from: the log is read twice, which standard input cannot be");
+        return report("--from: give a file; standard input cannot be read twice");
     }
     struct stat found; /* one that is not there is for who reads it */
     if ((stat(request->log, &found) == 0) && !S_ISREG(found.st_mode)) {

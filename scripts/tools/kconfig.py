@@ -45,7 +45,7 @@ def setting_lines(name, preset, lowest, highest, unit, _weakens, scope, meaning)
 
 def id_lines(name, heading, table):
     label = name.replace("_", " ")
-    help_line = f"The preset of the table is {table}, taken with AGV_ID_SET_TABLE while this is {heading}."
+    help_line = f"With AGV_ID_SET_TABLE the default {heading} stands for {table}; any other value is used as it is."
     return [f"config AGV_ID_{name.upper()}", f'\thex "Identifier: {label} (P1)"', f"\tdefault {heading}", "\trange 0x001 0x7FF",
             *(["\thelp", f"\t  {help_line}"] if table != heading else []), ""]
 

@@ -94,7 +94,7 @@ typedef struct {
 /** The recorder. Use the functions below to access it. */
 typedef struct {
     uint32_t next_sequence;
-    uint32_t stored_sequence; /**< events before this number are in flash */
+    uint32_t stored_sequence; /**< events before this number were given to the log in flash, or replaced */
     uint16_t seen;
     uint8_t run;
     uint8_t next_trip; /**< index of the trip that is replaced next */
@@ -143,10 +143,10 @@ bool agv_recorder_get(const agv_recorder_t *recorder, uint32_t sequence, agv_eve
  */
 bool agv_recorder_get_trip(const agv_recorder_t *recorder, uint32_t index, agv_event_t *event);
 
-/** The oldest valid event that is not in flash yet; NULL if there is none. */
+/** The oldest valid event that was not given to the log in flash yet; NULL if there is none. */
 const agv_event_t *agv_recorder_next_to_store(agv_recorder_t *recorder);
 
-/** Note that the event of agv_recorder_next_to_store was written to flash. */
+/** Note that the event of agv_recorder_next_to_store was given to the log in flash, also when the log refused it. */
 void agv_recorder_stored(agv_recorder_t *recorder);
 
 #endif

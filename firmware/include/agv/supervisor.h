@@ -3,8 +3,9 @@
  * The supervisor. It has two inputs, a received frame and a tick, and sends every frame through one gate.
  *
  * A program calls agv_supervisor_start once. Then it calls agv_supervisor_frame for every received frame, in the order of
- * the time stamps, and agv_supervisor_tick every millisecond, after the frames with time stamps up to that tick. One
- * process may run several supervisors; they share nothing. The functions are not reentrant: use one thread for each
+ * the time stamps, and agv_supervisor_tick every millisecond, after the frames with time stamps up to that tick. Whenever
+ * the receive queue is empty it calls agv_supervisor_receive_alive; without it the hardware watchdog is not fed (TIM-3).
+ * One process may run several supervisors; they share nothing. The functions are not reentrant: use one thread for each
  * supervisor. The caller owns all memory; no call allocates, recurses or has an unbounded loop (INT-1).
  */
 #ifndef AGV_SUPERVISOR_H
@@ -44,9 +45,9 @@ typedef struct {
 } agv_supervisor_t;
 
 /**
- * Start the supervisor (FSM-7): in INIT after a power-on, in TRIPPED after any other reset. Reads the reset cause and the
- * latch through the HAL, opens the safety output, tests codec and gate, asks the HAL for the result of its self-test
- * (HW-4), and sends the first safe commands.
+ * Start the supervisor (FSM-7): in TRIPPED after a reset other than power-on, or when after_power_on or a fault that is
+ * found now requires it; else in INIT. Reads the reset cause and the latch through the HAL, opens the safety output, tests
+ * codec and gate, asks the HAL for the result of its self-test (HW-4), and sends the first safe commands.
  *
  * @param config copied. If agv_config_check refuses it, the supervisor starts in TRIPPED with CONFIG_INVALID.
  * @param now_ms current time, any value
@@ -102,7 +103,7 @@ bool agv_supervisor_is_fresh(const agv_supervisor_t *supervisor, agv_message_t m
 /** Time of the last tick in ms; the time of the start when there was no tick yet. */
 uint32_t agv_supervisor_tick_ms(const agv_supervisor_t *supervisor);
 
-/** Whether the safety output is closed (FSM-4). */
+/** Whether the safety output is commanded closed (FSM-4). The contact itself may differ (OUTPUT_FEEDBACK, HW-1). */
 bool agv_supervisor_output_closed(const agv_supervisor_t *supervisor);
 
 /**

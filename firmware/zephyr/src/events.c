@@ -70,7 +70,7 @@ static void tell_deviations(const agv_config_t *config) {
         }
     }
     if (memcmp(&config->trips, &defaults.trips, sizeof config->trips) != 0) {
-        LOG_WRN("not the default: what faults do");
+        LOG_WRN("not the default: the class of one or more faults");
     }
 }
 

@@ -197,7 +197,7 @@ static void print_message(const struct shell *shell, const agv_supervisor_t *see
     if (agv_supervise.frames[message] == 0u) {
         shell_print(shell, "%03x %s: never received", id, name);
     } else if (age_ms == UINT32_MAX) {
-        shell_print(shell, "%03x %s: %u/s, no valid one, stale", id, name, rate);
+        shell_print(shell, "%03x %s: %u/s, no well-formed one for over 6 s, stale", id, name, rate);
     } else {
         shell_print(shell, "%03x %s: %u/s, age %u ms%s", id, name, rate, age_ms,
                     agv_supervisor_is_fresh(seen, (agv_message_t)message) ? "" : ", stale");
@@ -238,7 +238,7 @@ static int __maybe_unused format_log(const struct shell *shell, size_t argc, cha
         more = allowed && zephyr_hal_log_format(&agv_supervise.hal, sector);
         k_sched_unlock();
         if (!allowed) {
-            shell_error(shell, "refused: the safety output is closed");
+            shell_error(shell, "refused: the log can be erased only while the safety output is open");
             return -EPERM;
         }
         sector++;
@@ -258,8 +258,8 @@ SHELL_STATIC_SUBCMD_SET_CREATE(commands, READS(status, "state, first reason, out
                                READS(messages, "messages: how often, how old, stale", print_messages),
                                READS(version, "version and configuration", print_version),
 #if defined(CONFIG_AGV_SHELL_SERVICE)
-                               SHELL_CMD_ARG(format, NULL, "erase the log in flash, whatever its partition has",
-                                             format_log, 1, 0),
+                               SHELL_CMD_ARG(format, NULL, "erase the log partition, whatever it contains", format_log,
+                                             1, 0),
 #endif
                                SHELL_SUBCMD_SET_END);
 SHELL_CMD_REGISTER(agv, &commands, "the supervisor", NULL);

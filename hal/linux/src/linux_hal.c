@@ -89,7 +89,7 @@ bool linux_hal_open(hal_t *hal, const linux_hal_config_t *config, char *error) {
         hal->sides[i].can.fd = -1;
     }
     if (config->interfaces[HAL_CAN_VEHICLE] == NULL) {
-        (void)snprintf(error, LINUX_CAN_ERROR_SIZE, "which interface is the vehicle side?");
+        (void)snprintf(error, LINUX_CAN_ERROR_SIZE, "the interface of the vehicle side is missing");
         return false;
     }
     if (!open_sides(hal, error)) {

@@ -79,7 +79,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
 static bool take_fault(const char *name, campaign_causes_t *causes) {
     return fault_option_take("--fault", name, &causes->only) &&
            (!causes->newly_engaged || (campaign_engagement(agv_fault_from_name(name)) != NULL) ||
-            report("--newly-engaged: an engagement does not delay %s", name));
+            report("--newly-engaged: %s is not detected later at an engagement than under way", name));
 }
 
 /** Make the request of a campaign. */

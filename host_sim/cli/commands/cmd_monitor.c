@@ -83,8 +83,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "counter, the alarms, the state of the supervisor, and what changes. It sends nothing.\n\n"
             "On a terminal it is a screen; press h there for the keys. Elsewhere, and with TERM=dumb, it prints a\n"
             "line for each change. NO_COLOR=1 turns colours off.\n\n"
-            "The state of the supervisor is that of its status frame. Where none is received for a second, it is\n"
-            "that of a supervisor in this program, which only listens.\n",
+            "The state of the supervisor is that of its status frame. When none comes for 1 s (or for three\n"
+            "of its periods, if that is longer), it is that of a supervisor in this program, which only listens.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .instead = "--log",

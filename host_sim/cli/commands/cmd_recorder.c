@@ -20,7 +20,8 @@ typedef struct {
 
 static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_t rows[] = {
-        OPTION_NUMBER("--run", "N", "show run N; default: the newest run with a trip", &given->request.run, 0, RUN_MAX),
+        OPTION_NUMBER("--run", "N", "show run N; default: the newest run with a trip, else the newest run",
+                      &given->request.run, 0, RUN_MAX),
         OPTION_TEXT("--events", "FILE", "events as JSON Lines", &given->request.events),
     };
     static const option_example_t examples[] = {

@@ -80,7 +80,7 @@ static bool check_files(const given_t *given) {
     };
     analysis_options_roles(&given->analysis, &roles[FIXED_FILES]);
     if (output_is_stdout(given->request.store)) {
-        return report("--store: storage is read and written, which standard output cannot be");
+        return report("--store: give a file; standard output cannot be read");
     }
     if (given->request.timeline && (analysis_paths_use_stdout(&given->analysis) ||
                                     output_is_stdout(given->request.out) || output_is_stdout(given->request.events))) {

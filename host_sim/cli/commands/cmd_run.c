@@ -51,9 +51,10 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     };
     const option_syntax_t syntax = {
         .usage = "run --can IF [OPTION]...",
-        .summary = "Run the supervisor as a node on SocketCAN, in real time, until SIGINT, SIGTERM or SIGHUP. It then\n"
-                   "begins nothing new; frames that wait have up to 20 ms to leave. On a terminal it shows its state\n"
-                   "while it runs.\n",
+        .summary =
+            "Run the supervisor as a node on SocketCAN, in real time, until SIGINT, SIGTERM or SIGHUP. It then\n"
+            "makes no new frames; waiting frames are sent within 20 ms, or discarded. On a terminal it shows its\n"
+            "state while it runs.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .instead = "--can",

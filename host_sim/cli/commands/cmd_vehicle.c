@@ -60,8 +60,9 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "Simulate VCU, EPS and AI computer as nodes on SocketCAN, in real time, until SIGINT, SIGTERM or\n"
             "SIGHUP. They obey the commands on the bus. After 1.5 s the operator engages the autopilot, and the\n"
             "AI computer drives: gear D, throttle 30 %.\n\n"
-            "Inject faults, and any other step of a scenario, by option: --fault ai-stop@2s or --fault\n"
-            "eps-set,field=faults,value=08h@3s; or type them while it runs: 'ai stop', 'eps set field=faults\n"
+            "Inject faults, and the other steps of a scenario that a CAN interface allows, by option: --fault\n"
+            "ai-stop@2s or --fault eps-set,field=faults,value=08h@3s; or type them while it runs: 'ai stop', 'eps set "
+            "field=faults\n"
             "value=08h'. 'help' lists them; 'status' and 'quit' are commands, too. Times are 250ms, 1.5s, or\n"
             "milliseconds alone; identifiers are 168h, 0x168 or decimal 360.\n",
         .groups = groups,

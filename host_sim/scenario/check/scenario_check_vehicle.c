@@ -77,7 +77,8 @@ void scenario_check_vehicle_finish(scenario_check_t *check) {
         char window[SCENARIO_WINDOW_TEXT_SIZE];
         if (!check->vehicle_seen[i]) {
             scenario_check_window_text(expected->at_ms, window);
-            scenario_check_fail(check, expected->line, "vehicle %s: not seen as expected", window);
+            scenario_check_fail(check, expected->line,
+                                "vehicle %s: the expected values were not seen before the end of the run", window);
         }
     }
 }

@@ -109,7 +109,7 @@ static bool read_shown(const yaml_reader_t *reader, const yaml_node_t *node, voi
         return false;
     }
     if (scenario->shows_count == SCENARIO_SHOWS_MAX) {
-        return yaml_reader_fail(reader, node, "shows: more than %u", SCENARIO_SHOWS_MAX);
+        return yaml_reader_fail(reader, node, "shows: more than %u entries", SCENARIO_SHOWS_MAX);
     }
     if (!scenario_is_requirement(text) && (agv_fault_from_name(text) == AGV_FAULT_NONE)) {
         return yaml_reader_fail(reader, node,

@@ -88,7 +88,7 @@ static bool read_bounce_time(const yaml_reader_t *reader, const yaml_node_t *nod
     uint32_t ms = 0u;
 
     if (action->bounce_count == SCENARIO_BOUNCE_MAX) {
-        return yaml_reader_fail(reader, node, "pattern_ms: more than %u times", SCENARIO_BOUNCE_MAX);
+        return yaml_reader_fail(reader, node, "pattern_ms: more than %u durations", SCENARIO_BOUNCE_MAX);
     }
     if (!scenario_parse_ms(reader, node, "pattern_ms", 1u, BOUNCE_LONGEST_MS, &ms)) {
         return false;

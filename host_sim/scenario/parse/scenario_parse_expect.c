@@ -275,5 +275,5 @@ bool scenario_parse_expect(const yaml_reader_t *reader, const yaml_node_t *node,
         return false;
     }
     const char *what = unchecked(&((const scenario_t *)target)->expect);
-    return (what == NULL) || yaml_reader_fail(reader, node, "%s is not checked with 'states: any'", what);
+    return (what == NULL) || yaml_reader_fail(reader, node, "%s cannot be expected together with 'states: any'", what);
 }

@@ -56,7 +56,8 @@ static bool take_after(const yaml_reader_t *reader, const yaml_node_t *node, sce
     }
     step->at_ms += offset_ms; /* both are at most SCENARIO_DURATION_MAX_MS */
     if (step->at_ms > SCENARIO_DURATION_MAX_MS) {
-        return yaml_reader_fail(reader, node, "a step: %u ms are longer than a scenario may be", (unsigned)step->at_ms);
+        return yaml_reader_fail(reader, node, "a step: %u ms is above the longest scenario, %u ms",
+                                (unsigned)step->at_ms, (unsigned)SCENARIO_DURATION_MAX_MS);
     }
     scenario->waiting_count += (step->after.kind != (uint8_t)SCENARIO_FROM_START) ? 1u : 0u;
     return true;

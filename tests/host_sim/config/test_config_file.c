@@ -175,7 +175,7 @@ void test_numbers(void) {
     load_good("status_frame_id: 0\n");
     load_good("init_hold_ms: 0x1F4\n");
     TEST_ASSERT_EQUAL_UINT16(500, config.init_hold_ms);
-    load_bad("init_hold_ms: \"500\"\n", "c.yaml:1: init_hold_ms: a number is written without quotes\n");
+    load_bad("init_hold_ms: \"500\"\n", "c.yaml:1: init_hold_ms: write the number without quotes\n");
     load_bad("init_hold_ms: 0500\n", "'0500' is not a whole number; 100 to 10000 ms\n");
     load_bad("init_hold_ms: 18446744073709551616\n", "' is not within 100ms to 10s\n");
     load_bad("throttle_ceiling_pct: five\n", "'five' is not a whole number; 0 to 100 %\n");
@@ -226,9 +226,9 @@ void test_what_is_no_list_of_settings(void) {
     load_bad("topology: {a: b}\n", "needs one value");
     load_bad("topology:\n", "c.yaml:1: topology: has no value\n");
     load_bad("shadow: ''\n", "c.yaml:1: shadow: has no value\n");
-    load_bad("[a, b]: 1\n", "c.yaml:1: the name of a setting is a word\n");
+    load_bad("[a, b]: 1\n", "c.yaml:1: the name of a setting must be a word\n");
     load_bad("topology: \"sha\\0red\"\n", "c.yaml:1: topology: contains a NUL character\n");
-    load_bad("\"topo\\0logy\": shared\n", "the name of a setting is a word");
+    load_bad("\"topo\\0logy\": shared\n", "the name of a setting must be a word");
     load_bad("Topology: shared\n", "c.yaml:1: Topology: unknown setting: did you mean 'topology'?\n");
 }
 

@@ -140,7 +140,7 @@ class NewlyEngaged(Campaign):
         head, *runs = self.read("2").splitlines(keepends=True)
         runs[0] = json.dumps({**json.loads(runs[0]), "fault": "BUS_OFF"}) + "\n"
         self.write("2", "".join([head.replace('"newly_engaged": false', '"newly_engaged": true'), *runs]))
-        self.refuse("--merge", "1", "2", says="2:2: a fault that an engagement does not delay")
+        self.refuse("--merge", "1", "2", says="2:2: its fault cannot occur in a campaign with --newly-engaged")
 
 
 class Broken(Campaign):
@@ -212,7 +212,7 @@ class Refused(Campaign):
         for number in (1, 2):
             self.campaign("--runs", 6, "--seed", 7, "--fault", "BUS_OFF", "--shard", f"{number}/2", "--results",
                           f"{number}.jsonl")
-        self.refuse_line(3, {**self.lines("2.jsonl")[2], "fault": "TX_STALLED"}, "a fault that is not the one of the campaign")
+        self.refuse_line(3, {**self.lines("2.jsonl")[2], "fault": "TX_STALLED"}, "its fault is not that of the campaign (--fault)")
 
 
 class Picture(Campaign):

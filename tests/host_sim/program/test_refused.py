@@ -31,7 +31,7 @@ ROWS = {
     "atlas": (
         ("--show 0", "--show: case 0 cannot happen; the next one that can is 4"),
         ("--show 99999999", "--show: '99999999' is not a number from 0 to 168999"),
-        ("--show 168999", "--show: case 168999 cannot happen, nor one behind it"),
+        ("--show 168999", "--show: case 168999 cannot happen, nor can any later one"),
         ("--show 100 --results r", "--show prints one case")),
     "campaign": (
         ("", "--runs is missing"),
@@ -44,7 +44,7 @@ ROWS = {
             "1", "0/2", "3/2", "1/0", "1/1001", "a/b", "1/2/3", "/2", "1/", "-1/2", "1 /2", "123456789/2")),
         ("--runs 3 --seed 1 --fault NONSENSE", "unknown fault 'NONSENSE'"),
         ("--runs 3 --seed 1 --fault TX_GATE_REFUSED", "a campaign does not inject TX_GATE_REFUSED"),
-        ("--runs 3 --seed 1 --newly-engaged --fault BUS_OFF", "--newly-engaged: an engagement does not delay BUS_OFF"),
+        ("--runs 3 --seed 1 --newly-engaged --fault BUS_OFF", "--newly-engaged: BUS_OFF is not detected later at an engagement than under way"),
         ("--runs 3 --seed 1 --show 3", "no run 3"),
         ("--runs 3 --seed 1 --show 1 --results r", "--show prints one run"),
         ("--runs 3 --seed 1 --show 1 --shard 1/2", "--show prints one run"),
@@ -79,7 +79,7 @@ ROWS = {
         ("--seed 1 --runs 0", "--runs: '0' is not a number from 1"),
         ("--seed 1 --runs 1 --found /proc", "--found: the folder '/proc' cannot be written: "),
         *((f"--seed 1 --runs 1 --checkpoint {path}",
-           "--checkpoint: a checkpoint is read and written, which standard output cannot be") for path in ("-", "/dev/stdout"))),
+           "--checkpoint: give a file; standard output cannot be read") for path in ("-", "/dev/stdout"))),
     "monitor": (
         ("", "--can or --log is missing: what to watch; see host_sim monitor --help"),
         ("--log log --can can0", "--log and --can exclude each other"),
@@ -111,7 +111,7 @@ ROWS = {
         ("--ai-if can0 --topology shared log", "--ai-if needs --topology gateway"),
         ("--ai-if can0 --config shared.yaml log", "--ai-if needs --topology gateway"),
         ("--ai-if 0123456789abcdef log", "'0123456789abcdef' is too long"),
-        *((f"--store {path} log", "--store: storage is read and written") for path in ("-", "/dev/stdout"))),
+        *((f"--store {path} log", "--store: give a file; standard output cannot be read") for path in ("-", "/dev/stdout"))),
     "run": (
         ("", "--can is missing: the interface of the vehicle side; see host_sim run --help"),
         ("--can nosuch --events e --out o", "nosuch: "),
@@ -139,7 +139,7 @@ ROWS = {
         *((f"{option} s.yaml s.yaml", "the same file, 's.yaml'") for option in ("--junit", "--report")),
         (" ".join(["s.yaml"] * 1001), "FILE: more than 1000 were given"),
         ("--from log -o c.yaml", "c.yaml: exists already, and is not replaced"),
-        ("--from -", "the log is read twice"),
+        ("--from -", "give a file; standard input cannot be read twice"),
         ("--from none.log", "none.log: No such file"),
         ("--from pipe", "--from: the log is read twice, and pipe is not a regular file"),
         ("--from c.yaml", "c.yaml: "),
@@ -167,7 +167,7 @@ ROWS = {
         ("--hours 1", "--seed is missing"),
         ("--hours 0 --seed 1", "--hours: '0'"),
         ("--hours 1.5 --seed 1", "a time: 2h, or whole"),
-        ("--hours 1 --seed 1 --checkpoint -", "--checkpoint: a checkpoint is read and written"),
+        ("--hours 1 --seed 1 --checkpoint -", "--checkpoint: give a file"),
         ("--hours 1 --seed 1 --results a --checkpoint a", "same file")),
     "survey": (
         ("", "LOG or --can is missing"),

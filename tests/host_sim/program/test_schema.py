@@ -55,8 +55,8 @@ MEANING = {
     "a step that is earlier than the one before": ("at_ms: 200", "at_ms: 50", "the step is earlier than the one before it"),
     "a time after the end": ("at_ms: 200", "at_ms: 2000", r"ms is after the end \(duration_ms"),
     "times of steps that add up to more than a day":
-        ("{at_ms: 200,", "{after: first, wait: 86400000,", "ms are longer than a scenario may be"),
-    "a range that ends before it begins": ("[0, 5]", "[5, 0]", "the first is above the second"),
+        ("{at_ms: 200,", "{after: first, wait: 86400000,", "ms is above the longest scenario, 86400000 ms"),
+    "a range that ends before it begins": ("[0, 5]", "[5, 0]", "the lowest value is above the highest"),
     "a time that is too fine": ("at_ms: 100", "at_ms: 0.5ms", "is not a whole number of"),
     "a time with a unit that is out of range": ("at_ms: 100", "at_ms: 25h", "is not within [0-9a-z]+ to [0-9a-z]+$"),
     "a number in quotes that is out of range": ("frames: 2", 'frames: "0"', r"is not within -?\d+ to \d+"),
@@ -80,7 +80,7 @@ MEANING = {
                                           "needs the gateway topology|another message has this identifier|must be (below|"
                                           "above) reset_hold|this fault must stay a (trip|warning)|the value is out of range"),
     "what is not checked with any states": ("states: [{to: INIT, at_ms: [0, 5]}]", "states: any\n  resets: [{accepted: true, at_ms: 5}]",
-                                            "is not checked with 'states: any'"),
+                                            "cannot be expected together with 'states: any'"),
     "a name of more than a line": ("name: n\n", 'name: "a\\nb"\n', "name: must be one line"),
     "a name that is too long in bytes": ("name: n\n", "name: " + "\u00e4" * 60 + "\n", "longer than 95 bytes"),
 }
@@ -93,7 +93,7 @@ MEANING_OF_SETTINGS = {
     "a time that is too fine": ("init_hold_ms: 100.5ms\n", "is not a whole number of"),
     "a time with a unit that is out of range": ("init_hold_ms: 25h\n", "is not within"),
     "a number with a sign or a point, or an octal one": ("status_invalid_frames: +3\n", "is not a (whole number|time)"),
-    "an identifier in quotes": ('id_gear_command: "168h"\n', "a number is written without quotes"),
+    "an identifier in quotes": ('id_gear_command: "168h"\n', "write the number without quotes"),
 }
 
 

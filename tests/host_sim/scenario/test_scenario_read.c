@@ -373,7 +373,7 @@ void test_what_is_wrong_in_a_step_is_refused_with_its_line(void) {
         {STEP("at_ms: 1, board: bounce, pattern_ms: []"), "s.yaml:5: pattern_ms: is empty"},
         {STEP("at_ms: 1, board: bounce, pattern_ms: [0]"), "s.yaml:5: pattern_ms: 0 is not within 1 to 10000"},
         {STEP("at_ms: 1, board: bounce, pattern_ms: [1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17]"),
-         "s.yaml:5: pattern_ms: more than 16 times"},
+         "s.yaml:5: pattern_ms: more than 16 durations"},
         {STEP("at_ms: 1, board: slow_clock"), "s.yaml:5: 'slow_clock' needs 'permille'"},
         {STEP("at_ms: 1, board: slow_clock, permille: 0"), "s.yaml:5: permille: 0 is not within 1 to 900"},
         {STEP("at_ms: 1, board: fast_clock, permille: 901"), "s.yaml:5: permille: 901 is not within 1 to 900"},
@@ -394,10 +394,11 @@ void test_what_is_wrong_in_an_expectation_is_refused_with_its_line(void) {
         {HEAD "expect:\n  states: [{to: INIT}]\n", "s.yaml:5: a state: 'at_ms' is missing"},
         {HEAD "expect:\n  states: [{to: INIT, reason: BAD, at_ms: 0}]\n", "s.yaml:5: unknown fault 'BAD'"},
         {HEAD "expect:\n  states: any\n  resets: [{accepted: true, at_ms: 1}]\n",
-         "resets is not checked with 'states: any'"},
+         "resets cannot be expected together with 'states: any'"},
         {HEAD "expect:\n  states: any\n  safety_output: [{closed: true, at_ms: 1}]\n",
-         "safety_output is not checked with 'states: any'"},
-        {HEAD "expect:\n  states: [{to: INIT, at_ms: [2, 1]}]\n", "s.yaml:5: at_ms: the first is above the second"},
+         "safety_output cannot be expected together with 'states: any'"},
+        {HEAD "expect:\n  states: [{to: INIT, at_ms: [2, 1]}]\n",
+         "s.yaml:5: at_ms: the lowest value is above the highest"},
         {HEAD "expect:\n  states: [{to: INIT, at_ms: [1]}]\n", "s.yaml:5: at_ms must be a time or a range, [lowest"},
         {HEAD "expect:\n  states: [{to: INIT, at_ms: {after: x}}]\n", "s.yaml:5: at_ms must be a time or a range, ["},
         {EXPECT("vehicle: [{at_ms: 1, speed_mm_s: {}}]"), "s.yaml:6: speed_mm_s must be a number or a range, ["},
@@ -461,7 +462,7 @@ void test_there_is_room_for_so_many_and_no_more(void) {
         used += (size_t)snprintf(&text[used], sizeof text - used, "SUP-1, ");
     }
     (void)snprintf(&text[used], sizeof text - used, "]\n");
-    read_bad(text, "s.yaml:2: shows: more than 24");
+    read_bad(text, "s.yaml:2: shows: more than 24 entries");
 }
 
 void test_a_file_that_is_not_there(void) {

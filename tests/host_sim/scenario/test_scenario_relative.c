@@ -254,7 +254,7 @@ void test_the_vehicle_at_some_time(void) {
     }
     expect_failure("line 6: vehicle in 100..103 ms: gear (P 8, R 2, N 4, D 1) 8h is expected, seen: 1h");
     vehicle(5u, 8u);
-    expect_failure("line 6: vehicle 0..3 ms after trip: not seen as expected");
+    expect_failure("line 6: vehicle 0..3 ms after trip: the expected values were not seen before the end of the run");
 }
 
 void test_what_makes_no_sense_is_refused_with_its_line(void) {
@@ -281,7 +281,8 @@ void test_what_makes_no_sense_is_refused_with_its_line(void) {
         {"expect:\n  states: [{to: INIT, at_ms: 0, after: trip, within: 5}]\n",
          "s.yaml:5: a state: either 'at_ms' or 'after'"},
         {"expect:\n  states: [{to: INIT, after: nobody, within: 5}]\n", "s.yaml:5: after: 'nobody' is neither"},
-        {"expect:\n  states: [{to: INIT, after: trip, within: [6, 5]}]\n", "s.yaml:5: within: the first is above"},
+        {"expect:\n  states: [{to: INIT, after: trip, within: [6, 5]}]\n",
+         "s.yaml:5: within: the lowest value is above"},
         {"expect:\n  states: []\n  faults: [{name: BUS_OFF, after: trip}]\n", "s.yaml:6: a fault: 'within' is missing"},
     };
     for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {

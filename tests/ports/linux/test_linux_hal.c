@@ -33,7 +33,7 @@ void test_an_interface_that_cannot_be_opened_is_named(void) {
     expect_refusal("lo", "vcan1", "lo: not a CAN interface");
     expect_refusal("vcan0", "vcan9", "vcan9: there is no such interface");
     expect_refusal("vcan0", "vcan0", "vcan0: both sides on one interface: a gateway needs two");
-    expect_refusal(NULL, "vcan0", "which interface is the vehicle side?");
+    expect_refusal(NULL, "vcan0", "the interface of the vehicle side is missing");
 }
 
 void test_a_second_name_is_no_second_interface(void) {

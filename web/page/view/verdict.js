@@ -4,9 +4,9 @@ import { byId, make, say } from "../dom.js";
 import { STATES, TONES } from "./machine.js";
 
 const CALM = {
-  INIT: ["The supervisor starts: it waits for all nodes.", "The safety output is open, and the safe commands are sent."],
-  STANDBY: ["Manual. The supervisor listens.", "All status messages are in time. The autopilot is not engaged: the supervisor sends no command of its own."],
-  ACTIVE: ["On autopilot. Nothing is wrong.", "The AI computer drives. The supervisor checks every message against its deadline and its range."],
+  INIT: ["The supervisor starts: it waits for VCU, EPS, manual mode and standstill.", "The safety output is open, and the safe commands are sent."],
+  STANDBY: ["Manual. The supervisor listens.", "There is no trip. The autopilot is not engaged: the supervisor sends no command of its own."],
+  ACTIVE: ["On autopilot. There is no trip.", "The AI computer drives. The supervisor checks every message against its deadline and its range."],
 };
 
 const TITLES = ["What failed", "What the supervisor did", "Why the vehicle stands"];

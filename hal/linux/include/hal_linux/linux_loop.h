@@ -11,7 +11,7 @@
 
 /** Result of linux_loop_wait(): bits. */
 #define LINUX_LOOP_TICK 0x01u   /**< one or more milliseconds have passed: a late program gets only one tick */
-#define LINUX_LOOP_SIGNAL 0x02u /**< SIGINT, SIGTERM or SIGHUP was received */
+#define LINUX_LOOP_SIGNAL 0x02u /**< SIGINT, SIGTERM or SIGHUP came, or waiting failed: the program must end */
 #define LINUX_LOOP_FILE 0x04u   /**< one of the added files is ready; the program must try them */
 
 /** A loop; change it through the functions. */

@@ -188,7 +188,7 @@ uint32_t sim_hal_clock_at(const hal_t *hal, uint64_t bus_us);
 /**
  * Make calls of hal/include fail: those with the numbers @p first .. @p first + @p count - 1 (the first call after
  * sim_hal_init() is number 1; hal->calls is the number of the last one), as far as their operation is in @p ops.
- * A failing operation has no effect and reports the worst that its contract allows:
+ * A failing operation has no effect and reports:
  * send, write_latch, append: false; read_latch, read_record: 0; reset_cause: HAL_RESET_UNKNOWN; status: what it
  * reported last; both clocks and the inputs: what they read last; self_test: 0; purge, recover, led, safety output, feed: nothing happens.
  * @param first 0 = nothing fails (default)

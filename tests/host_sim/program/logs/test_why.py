@@ -101,8 +101,8 @@ class FiveLogs(Case):
         log = traffic.log(traffic.frames(2000)) + traffic.log(traffic.frames(2000), base_us=traffic.BASE_US - 60 * S)
         lines = self.text(log, "--fail-on-trip", status=1)
         self.assertEqual(lines[0], "NOT SUPERVISED: the time stamps go back by 61.994 s at line 1421: from there on, "
-                                   "earlier lines get")
-        self.assertEqual(lines[1], "                the time 1.994 s; cut the log there, or sort it")
+                                   "lines with an")
+        self.assertEqual(lines[1], "                earlier time stamp get the time 1.994 s; cut the log there, or sort it")
         self.assertEqual(lines[-1], "log         time stamps that went backwards: 1420")
         self.assertEqual(self.why(log)["not_supervised"], ["time_stamps"])
 
