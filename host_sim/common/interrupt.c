@@ -10,10 +10,17 @@ enum { LOOK_EVERY_MS = 100 };
 static const int held[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 static const size_t held_count = sizeof held / sizeof held[0];
 
+static bool is_ignored(int signal) {
+    struct sigaction action;
+    return (sigaction(signal, NULL, &action) == 0) && (action.sa_handler == SIG_IGN);
+}
+
 static void make_set(sigset_t *set) {
     (void)sigemptyset(set);
     for (size_t i = 0u; i < held_count; i++) {
-        (void)sigaddset(set, held[i]);
+        if ((held[i] != SIGHUP) || !is_ignored(SIGHUP)) { /* nohup */
+            (void)sigaddset(set, held[i]);
+        }
     }
 }
 
@@ -26,6 +33,11 @@ void interrupt_hold(void) {
 void interrupt_release(void) {
     sigset_t set;
     make_set(&set);
+    for (size_t i = 0u; i < held_count; i++) {
+        if (is_ignored(held[i]) && (sigismember(&set, held[i]) == 1)) {
+            (void)signal(held[i], SIG_DFL); /* a pending one would be discarded, and half a run look like a whole one */
+        }
+    }
     (void)sigprocmask(SIG_UNBLOCK, &set, NULL);
 }
 

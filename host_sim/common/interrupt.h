@@ -1,7 +1,8 @@
 /**
  * @file interrupt.h
  * Delays SIGINT, SIGTERM, SIGHUP and SIGQUIT while a temporary file exists. The program polls for them between two steps,
- * removes the file, and then lets them act.
+ * removes the file, and then lets them act. A shell starts a script's background jobs with SIGINT ignored: here it ends the
+ * program all the same. Only an ignored SIGHUP stays ignored (nohup).
  */
 #ifndef HOST_SIM_INTERRUPT_H
 #define HOST_SIM_INTERRUPT_H

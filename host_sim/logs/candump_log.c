@@ -68,11 +68,13 @@ static bool pass_over(candump_log_t *log, const char *wrong) {
 static ssize_t read_file(void *ctx, void *bytes, size_t size) {
     candump_log_t *log = ctx;
     for (;;) {
-        if (!interrupt_wait(log->fd, INTERRUPT_READ)) {
+        log->is_interrupted = !interrupt_wait(log->fd, INTERRUPT_READ);
+        if (log->is_interrupted) {
             return -1;
         }
         const ssize_t count = read(log->fd, bytes, size);
-        if ((count == 0) && interrupt_pending()) { /* Ctrl-C ended what wrote the log, too */
+        log->is_interrupted = (count == 0) && interrupt_pending(); /* Ctrl-C ended what wrote the log, too */
+        if (log->is_interrupted) {
             return -1;
         }
         if (count >= 0) {
@@ -135,7 +137,9 @@ static bool check_beginning(candump_log_t *log) {
         return report_foreign(log, format);
     }
     if (!log->skip_bad && looks_binary(log)) {
-        return report_at(log->name, 1u, "binary data: unknown log format; readable are candump -l and Vector ASC");
+        return report_at(
+            log->name, 1u,
+            "binary data: unknown log format; readable are candump -l, candump -t a, -t A or -t z, and Vector ASC");
     }
     static const char utf8_mark[] = "\xEF\xBB\xBF";
     const bool is_marked =
@@ -271,6 +275,16 @@ static void leave_out(candump_log_t *log) {
     note("%s:%" PRIu64 ": the last line may be cut off; it is left out", log->name, log->line);
 }
 
+/** Without its header the numbers and times of an ASC log may be others than they are taken for. */
+static void remark_base(candump_log_t *log) {
+    if ((log->format == CANDUMP_FORMAT_ASC) && !log->asc.has_base) {
+        log->asc.has_base = true;
+        note("%s:%" PRIu64 ": no line 'base hex|dec timestamps absolute|relative' before the first frame: read as "
+             "hexadecimal with absolute time stamps",
+             log->name, log->line);
+    }
+}
+
 candump_result_t candump_next(candump_log_t *log, candump_record_t *record) {
     bool failed = !log->is_checked && !check_beginning(log);
     size_t length = 0u;
@@ -289,6 +303,7 @@ candump_result_t candump_next(candump_log_t *log, candump_record_t *record) {
         wrong = (wrong == NULL) ? check_stamp(log, record->stamp_us) : wrong;
         if (wrong == NULL) {
             log->frameless = 0u;
+            remark_base(log);
             return CANDUMP_RECORD;
         }
         if ((wrong != LOG_NO_FRAME) && !is_blank_line && !pass_over(log, wrong)) {

@@ -42,8 +42,9 @@ typedef struct {
     bool skip_bad;    /**< skip and count bad lines; else they end the reading */
     int fd;
     bool at_end;
-    bool is_cut_off; /**< the line that was read last is the last one, and has no line feed */
-    bool is_checked; /**< its first bytes are not those of a binary format */
+    bool is_interrupted; /**< the reading failed because of a signal (interrupt.h) */
+    bool is_cut_off;     /**< the line that was read last is the last one, and has no line feed */
+    bool is_checked;     /**< its first bytes are not those of a binary format */
     candump_format_t format;
     uint64_t frameless; /**< bytes read since the last frame */
     uint64_t newest_us; /**< the latest time stamp; UINT64_MAX: none yet */

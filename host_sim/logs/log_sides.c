@@ -20,5 +20,5 @@ bool log_sides_check(bool is_gateway, const char *ai_interface) {
 
 bool log_sides_check_heard(const char *ai_interface, bool was_heard, const char *heard) {
     return (ai_interface == NULL) || was_heard ||
-           report("--ai-if: the log has no frame from %s, but from %s", ai_interface, heard);
+           report("--ai-if: the log has frames from %s, but none from %s", heard, ai_interface);
 }

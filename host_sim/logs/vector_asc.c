@@ -77,12 +77,21 @@ static void take_date(vector_asc_t *asc, rest_t rest) {
     }
 }
 
-/** Read "hex  timestamps absolute". */
-static void take_base(vector_asc_t *asc, rest_t rest) {
-    asc->is_decimal = log_token_is(next(&rest), "dec");
-    if (log_token_is(next(&rest), "timestamps")) {
-        asc->is_relative = log_token_is(next(&rest), "relative");
+/** Read "hex  timestamps absolute". @return LOG_NO_FRAME; or what is wrong */
+static const char *take_base(vector_asc_t *asc, rest_t rest) {
+    const log_token_t base = next(&rest);
+    asc->is_decimal = log_token_is(base, "dec");
+    if (!asc->is_decimal && !log_token_is(base, "hex")) {
+        return "the base is neither hex nor dec";
     }
+    asc->has_base = true;
+    if (log_token_is(next(&rest), "timestamps")) {
+        const log_token_t kind = next(&rest);
+        asc->is_relative = log_token_is(kind, "relative");
+        return (asc->is_relative || log_token_is(kind, "absolute")) ? LOG_NO_FRAME
+                                                                    : "timestamps are neither absolute nor relative";
+    }
+    return LOG_NO_FRAME;
 }
 
 /** The lines that have no time stamp. */
@@ -292,8 +301,7 @@ static const char *take_header(vector_asc_t *asc, log_token_t first, rest_t *res
         take_date(asc, *rest);
         return LOG_NO_FRAME;
     case LINE_BASE:
-        take_base(asc, *rest);
-        return LOG_NO_FRAME;
+        return take_base(asc, *rest);
     case LINE_OTHER:
         return LOG_NO_FRAME;
     default:

@@ -61,10 +61,7 @@ static void begin_half(monitor_t *monitor, uint64_t half_us) {
     monitor_rows_half(monitor);
 }
 
-void monitor_time(monitor_t *monitor, uint64_t t_us) {
-    if (t_us <= monitor->now_us) {
-        return;
-    }
+static void pass_to(monitor_t *monitor, uint64_t t_us, bool with_supervisor) {
     /* In a flood not with every frame: once a millisecond is exact enough. */
     const bool same_ms = t_us / US_PER_MS == monitor->now_us / US_PER_MS;
     monitor->now_us = t_us;
@@ -81,7 +78,22 @@ void monitor_time(monitor_t *monitor, uint64_t t_us) {
         }
     }
     monitor_rows_time(monitor);
-    monitor_supervisor_time(monitor);
+    if (with_supervisor) {
+        monitor_supervisor_time(monitor);
+    }
+}
+
+void monitor_time(monitor_t *monitor, uint64_t t_us) {
+    if (t_us <= monitor->now_us) {
+        return;
+    }
+    /* A silence passes by the millisecond, so that what it causes is listed in its order. A longer leap is the hole of a log. */
+    const bool is_silence = t_us - monitor->now_us <= MONITOR_LEAP_MAX_US;
+    const uint64_t end_us = is_silence ? t_us : monitor->now_us + MONITOR_LEAP_MAX_US;
+    for (uint64_t ms = (monitor->now_us / US_PER_MS) + 1u; ms * US_PER_MS < end_us; ms++) {
+        pass_to(monitor, ms * US_PER_MS, is_silence);
+    }
+    pass_to(monitor, t_us, true);
 }
 
 /** Find the entry of an identifier, or make one. @return NULL: there is no room */

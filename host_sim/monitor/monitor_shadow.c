@@ -7,9 +7,6 @@
 #include "logs/error_frame.h"
 #include "text/units.h"
 
-/** A longer leap of time is no silence of the bus, but a program that stood still, or a log with a hole. */
-#define LEAP_MAX_US (10u * (uint64_t)US_PER_S)
-
 struct monitor_shadow {
     agv_config_t config;
     agv_ids_t ids;
@@ -52,7 +49,7 @@ static void run_ticks(monitor_shadow_t *shadow, uint64_t end_us) {
 }
 
 bool monitor_shadow_time(monitor_shadow_t *shadow, uint64_t t_us) {
-    if (t_us > (shadow->next_ms * US_PER_MS) + LEAP_MAX_US) {
+    if (t_us > (shadow->next_ms * US_PER_MS) + MONITOR_LEAP_MAX_US) {
         return false;
     }
     run_ticks(shadow, t_us);

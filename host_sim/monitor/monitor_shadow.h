@@ -12,6 +12,10 @@
 #include "agv/config.h"
 #include "hal/can.h"
 #include "session/session.h"
+#include "text/units.h"
+
+/** A longer leap of time is no silence of the bus, but a program that stood still, or a log with a hole. */
+#define MONITOR_LEAP_MAX_US (10u * (uint64_t)US_PER_S)
 
 typedef struct monitor_shadow monitor_shadow_t;
 

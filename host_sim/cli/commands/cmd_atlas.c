@@ -51,8 +51,9 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
 static bool make_request(const given_t *given, atlas_request_t *request) {
     *request = (atlas_request_t){.shard = 1u, .shards = 1u, .results = given->results};
     request->shows_one = given->show != OPTION_NOT_GIVEN;
-    if (request->shows_one && (given->results != NULL)) {
-        return report("--show prints one case: --results cannot be combined with it");
+    if (request->shows_one &&
+        ((given->results != NULL) || (given->shard != NULL) || (given->first != NULL) || (given->second != NULL))) {
+        return report("--show prints one case: --results, --shard, --first and --second cannot be combined with it");
     }
     request->one = request->shows_one ? (uint32_t)given->show : 0u;
     return ((given->shard == NULL) || random_options_shard(given->shard, &request->shard, &request->shards)) &&

@@ -14,6 +14,10 @@ static status_t print(const config_options_t *given, bool is_schema, bool to_kco
         (void)report("give only one of --schema and --to-kconfig");
         return STATUS_UNUSABLE;
     }
+    if (is_schema && ((given->path != NULL) || (given->topology >= 0) || (given->id_set >= 0) || given->shadow)) {
+        (void)report("--schema prints the schema of every configuration: give no configuration with it");
+        return STATUS_UNUSABLE;
+    }
     if (is_schema) {
         return yaml_schema_print(config_schema(false), "Configuration of the AGV safety supervisor") ? STATUS_OK
                                                                                                      : STATUS_UNUSABLE;

@@ -61,10 +61,9 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "SIGHUP. They obey the commands on the bus. After 1.5 s the operator engages the autopilot, and the\n"
             "AI computer drives: gear D, throttle 30 %.\n\n"
             "Inject faults, and the other steps of a scenario that a CAN interface allows, by option: --fault\n"
-            "ai-stop@2s or --fault eps-set,field=faults,value=08h@3s; or type them while it runs: 'ai stop', 'eps set "
-            "field=faults\n"
-            "value=08h'. 'help' lists them; 'status' and 'quit' are commands, too. Times are 250ms, 1.5s, or\n"
-            "milliseconds alone; identifiers are 168h, 0x168 or decimal 360.\n",
+            "ai-stop@2s or --fault eps-set,field=faults,value=08h@3s; or type them while it runs: 'ai stop',\n"
+            "'eps set field=faults value=08h'. 'help' lists them; 'status' and 'quit' are commands, too. Times\n"
+            "are 250ms, 1.5s, or milliseconds alone; identifiers are 168h, 0x168 or decimal 360.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .instead = "--can",

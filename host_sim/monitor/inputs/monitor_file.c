@@ -21,7 +21,8 @@ static void read_next(monitor_file_t *file) {
     const uint64_t before_us = file->next_us;
     const candump_result_t result = candump_next(&file->log, &file->next);
     file->has_next = result == CANDUMP_RECORD;
-    file->failed = result == CANDUMP_FAILED;
+    file->failed = (result == CANDUMP_FAILED) && !file->log.is_interrupted;
+    file->is_read = result == CANDUMP_END;
     if (file->has_next) {
         note_back(file);
         const uint64_t stamp_us = file->next.stamp_us;

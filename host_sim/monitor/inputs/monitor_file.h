@@ -26,7 +26,8 @@ typedef struct {
     uint64_t back_line;                         /**< where */
     bool ai_was_heard;                          /**< a frame of the AI side was passed on */
     bool has_next;
-    bool failed; /**< a bad line or a read error: was reported */
+    bool is_read; /**< to its end */
+    bool failed;  /**< a bad line or a read error: was reported */
 } monitor_file_t;
 
 /** Open a log and read its first frame. @return false: was reported */

@@ -154,9 +154,11 @@ static bool open_screen(run_t *run) {
 }
 
 static bool run_all(run_t *run) {
+    if (!open_input(run)) { /* may wait for a writer: a signal ends the program there */
+        return false;
+    }
     interrupt_hold();
-    if (!open_input(run) || !make_monitor(run) ||
-        ((run->request->record != NULL) && !begin_record(run, run->request->record))) {
+    if (!make_monitor(run) || ((run->request->record != NULL) && !begin_record(run, run->request->record))) {
         return false;
     }
     config_note_deviations(&run->request->config); /* before the screen, which would be drawn over it */
@@ -171,8 +173,8 @@ static bool run_all(run_t *run) {
     if (run->request->log != NULL) {
         monitor_file_remark(&run->file);
     }
-    const bool is_read = (run->request->log != NULL) && !run->file.has_next && !run->file.failed;
-    if (is_read && !log_sides_check_heard(run->request->ai_interface, run->file.ai_was_heard, run->file.interface)) {
+    if ((run->request->log != NULL) && run->file.is_read &&
+        !log_sides_check_heard(run->request->ai_interface, run->file.ai_was_heard, run->file.interface)) {
         return false;
     }
     return !run->failed && !run->file.failed;

@@ -123,7 +123,9 @@ static bool read_shown(const yaml_reader_t *reader, const yaml_node_t *node, voi
 }
 
 static bool read_shows(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return yaml_reader_list(reader, node, "shows", read_shown, target);
+    return yaml_reader_list(reader, node, "shows", read_shown, target) &&
+           ((((const scenario_t *)target)->shows_count > 0u) ||
+            yaml_reader_fail(reader, node, "shows: names neither a requirement nor a fault"));
 }
 
 static bool read_description(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
@@ -175,7 +177,7 @@ const yaml_shape_t SCENARIO_FAULT_SHAPE = {.kind = YAML_KIND_NAMES, .name = faul
 static const yaml_shape_t NAME = {.kind = YAML_KIND_TEXT, .highest = SCENARIO_TEXT_MAX - 1};
 static const yaml_shape_t SHOWN = {
     .kind = YAML_KIND_NAMES, .name = scenario_requirement, .other = &SCENARIO_FAULT_SHAPE};
-static const yaml_shape_t SHOWS = {.kind = YAML_KIND_LIST, .items = &SHOWN, .highest = SCENARIO_SHOWS_MAX};
+static const yaml_shape_t SHOWS = {.kind = YAML_KIND_LIST, .items = &SHOWN, .lowest = 1, .highest = SCENARIO_SHOWS_MAX};
 static const yaml_shape_t STEPS = {.kind = YAML_KIND_LIST, .highest = SCENARIO_STEPS_MAX};
 
 static const yaml_key_t TOP[] = {

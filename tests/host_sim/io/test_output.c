@@ -128,6 +128,12 @@ void test_a_file_that_cannot_take_its_place_leaves_nothing(void) {
     TEST_ASSERT_EQUAL_INT(0, rmdir(scratch_path("a")));
 }
 
+static volatile sig_atomic_t noted;
+
+static void note_signal(int signal) {
+    noted = signal;
+}
+
 void test_a_signal_waits_until_the_unfinished_is_removed(void) {
     TEST_ASSERT_TRUE(output_open(output, scratch_path("a")));
     TEST_ASSERT_FALSE(interrupt_pending());
@@ -137,10 +143,20 @@ void test_a_signal_waits_until_the_unfinished_is_removed(void) {
     TEST_ASSERT_FALSE(interrupt_wait(STDOUT_FILENO, INTERRUPT_WRITE));
     output_discard(output);
     TEST_ASSERT_EQUAL_UINT(0, scratch_count());
-    (void)signal(SIGTERM, SIG_IGN); /* or it would end this test now */
+    (void)signal(SIGTERM, note_signal); /* or it would end this test now */
     interrupt_release();
     (void)signal(SIGTERM, SIG_DFL);
+    TEST_ASSERT_EQUAL_INT(SIGTERM, noted);
     TEST_ASSERT_FALSE(interrupt_pending());
+}
+
+void test_an_ignored_hangup_stays_ignored(void) {
+    (void)signal(SIGHUP, SIG_IGN);
+    interrupt_hold();
+    TEST_ASSERT_EQUAL_INT(0, raise(SIGHUP));
+    TEST_ASSERT_FALSE(interrupt_pending());
+    interrupt_release();
+    (void)signal(SIGHUP, SIG_DFL);
 }
 
 static bool are_distinct(const char *read, const char *written, const char *also_written) {

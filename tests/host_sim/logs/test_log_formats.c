@@ -219,13 +219,21 @@ void test_a_wild_relative_time_does_not_shift_the_lines_behind_it(void) {
 
 void test_vector_asc_with_a_time_of_day_that_is_none(void) {
     open_text("date Tue Nov 14 10:13:260 pm 2023\n"
+              "base hex\n"
               "   0.010000 1  43F             Rx   d 1 11\n");
     expect(10000, "can0", 0x43F, 0, 1, 0x1100000000000000);
 }
 
 void test_vector_asc_without_a_header(void) {
-    open_text("   0.010000 1  43F             Rx   d 1 11\n");
-    expect(10000, "can0", 0x43F, 0, 1, 0x1100000000000000);
+    open_text("   0.010000 1  43F             Rx   d 1 11\n"
+              "   0.020000 1  43F             Rx   d 1 22\n");
+    TEST_ASSERT_EQUAL_INT(CANDUMP_RECORD, candump_next(log_file, &record));
+    TEST_ASSERT_EQUAL_UINT64(10000, record.stamp_us);
+    TEST_ASSERT_EQUAL_HEX32(0x43F, record.frame.id);
+    (void)scratch_said_line(
+        "log:1: no line 'base hex|dec timestamps absolute|relative' before the first frame: read as "
+        "hexadecimal with absolute time stamps");
+    expect(20000, "can0", 0x43F, 0, 1, 0x2200000000000000); /* it is said once */
     expect_end();
 }
 
@@ -243,6 +251,8 @@ void test_lines_of_vector_asc_that_are_damaged(void) {
         {" 0.1 CANFD 1 Rx 123 1 0 9\n", "log:3: bit rate switch"},
         {" 0.1 CANFD 1 Rx 123 1 0 9 12 00\n", "log:3: the data is shorter"},
         {"nonsense\n", "log:3: not a line of an ASC log"},
+        {"base oct  timestamps absolute\n", "log:3: the base is neither hex nor dec"},
+        {"base hex  timestamps foo\n", "log:3: timestamps are neither absolute nor relative"},
     };
     refuse_each("base hex  timestamps absolute\n 0.0 1 43F Rx d 1 00\n", bad, sizeof bad / sizeof bad[0]);
 }
@@ -266,7 +276,7 @@ static size_t pack(const char *text, unsigned char *packed, size_t size) {
 
 void test_every_format_may_be_compressed(void) {
     static const char *const texts[] = {LINE, " (1.000000)  can0  43F   [8]  00 00 00 00 00 00 00 11\n",
-                                        " 1.0 1 43F Rx d 8 00 00 00 00 00 00 00 11\n"};
+                                        "base hex\n 1.0 1 43F Rx d 8 00 00 00 00 00 00 00 11\n"};
     unsigned char packed[512];
     for (size_t i = 0; i < 3; i++) {
         open_bytes(packed, pack(texts[i], packed, sizeof packed));

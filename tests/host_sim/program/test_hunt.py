@@ -74,11 +74,17 @@ class Hunt(hostsim.Case):
         self.assertEqual(LAST.search(self.hunt(*arguments, "--runs", 1500).stdout)[1], "500")
         self.assert_refused(self.hunt(*arguments, "--runs", 999, status=(2,)), "state: its runs go up to 1000: give --runs 1000")
 
-    def interrupted(self, *arguments):
-        """What it says when a signal ends it during its first runs."""
+    def interrupted(self, *arguments, ignored=()):
+        """What it says when a signal ends it during its first runs. The caller ignores some signals."""
+        def ignore():
+            for one in ignored:
+                signal.signal(one, signal.SIG_IGN)
         with subprocess.Popen([hostsim.PROGRAM, "hunt", "--seed", "3", "--runs", "100000", *map(str, arguments)],
-                              cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+                              cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                              preexec_fn=ignore) as process:
             self.wait_until_it_looks_for_signals(process.pid)
+            if signal.SIGHUP in ignored:
+                process.send_signal(signal.SIGHUP)
             process.send_signal(signal.SIGINT)
             said = process.communicate(timeout=600)[1]
         self.assertEqual(process.returncode, -signal.SIGINT)
@@ -89,6 +95,10 @@ class Hunt(hostsim.Case):
         self.assertRegex(self.interrupted("--checkpoint", "state"), r"^host_sim: interrupted after \d+ runs?; nothing is saved "
                          r"yet: the checkpoint is written after each 500 runs\n$")
         self.assertEqual(self.files(), [])
+
+    def test_in_the_background_of_a_script_a_signal_ends_it_too(self):
+        """A shell starts it with SIGINT ignored, nohup with SIGHUP ignored: only the latter stays ignored."""
+        self.assertRegex(self.interrupted(ignored=(signal.SIGINT, signal.SIGHUP)), r"^host_sim: interrupted after \d+ runs?\n$")
 
     def test_a_checkpoint_that_cannot_be_written_is_refused_at_once(self):
         self.assert_refused(self.hunt("--seed", 1, "--runs", 100000, "--checkpoint", "no/where", status=(2,)), "no/where: ")

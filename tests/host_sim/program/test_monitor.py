@@ -1,5 +1,8 @@
 """host_sim monitor from outside: the screen in tmux, lines where there is no terminal."""
+import os
 import pathlib
+import re
+import signal
 import subprocess
 import time
 import unittest
@@ -158,6 +161,32 @@ class Lines(hostsim.Case):
         self.assertEqual(done.returncode, 0)
         self.assertIn(b"TRIPPED", done.stdout)
 
+    def test_a_log_that_still_grows_is_ended_by_a_signal(self):
+        with subprocess.Popen([hostsim.PROGRAM, "monitor", "--log", "-", "--speed", "max"], stdin=subprocess.PIPE,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+            process.stdin.write(EXAMPLE.read_bytes())
+            process.stdin.flush()
+            self.wait_until_it_looks_for_signals(process.pid)
+            process.send_signal(signal.SIGINT)
+            said = process.stderr.read()
+        self.assertEqual((process.returncode, said), (0, b""))
+
+    def test_a_log_that_nobody_writes_is_ended_by_a_signal(self):
+        os.mkfifo(os.path.join(self.folder, "pipe"))
+        with subprocess.Popen([hostsim.PROGRAM, "monitor", "--log", "pipe"], cwd=self.folder) as process:
+            time.sleep(0.5)
+            process.send_signal(signal.SIGTERM)
+            self.assertEqual(process.wait(timeout=60), -signal.SIGTERM)
+
+    def test_what_a_silence_causes_is_listed_in_its_order(self):
+        frames = list(traffic.frames(3000))
+        log = traffic.log([frame for frame in frames if not 1000 <= frame.t_ms < 2000])
+        done = self.monitor("--log", self.write("gap.log", log), "--speed", "max")
+        times = [float(line.split()[0]) for line in done.stdout.splitlines() if re.match(r" +[0-9.]+ s ", line)]
+        self.assertGreater(len(times), 20)
+        self.assertEqual(times, sorted(times))
+        self.assertEqual(self.monitor("--log", "gap.log", "--speed", "50", cwd=self.folder).stdout, done.stdout)
+
     def test_a_time_that_goes_backwards(self):
         for back, said in ((9, ""), (500, "host_sim: b.log:3: the time stamps go back by 0.500 s; the times are wrong there: cut "
                                           "or sort the log\n")):
@@ -174,7 +203,7 @@ class Lines(hostsim.Case):
         self.assertEqual((done.returncode, done.stderr), (0, "host_sim: b.log: lines skipped: 2\n"))
 
     def test_an_ai_side_that_the_log_does_not_have(self):
-        for name, status, said in (("can9", 2, "host_sim: --ai-if: the log has no frame from can9, but from can0\n"),
+        for name, status, said in (("can9", 2, "host_sim: --ai-if: the log has frames from can0, but none from can9\n"),
                                    ("can0", 0, "")):
             done = self.monitor("--log", EXAMPLE, "--speed", "max", "--ai-if", name)
             self.assertEqual((done.returncode, done.stderr), (status, GATEWAY + said))

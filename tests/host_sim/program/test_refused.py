@@ -32,7 +32,9 @@ ROWS = {
         ("--show 0", "--show: case 0 cannot happen; the next one that can is 4"),
         ("--show 99999999", "--show: '99999999' is not a number from 0 to 168999"),
         ("--show 168999", "--show: case 168999 cannot happen, nor can any later one"),
-        ("--show 100 --results r", "--show prints one case")),
+        ("--show 100 --results r", "--show prints one case"),
+        ("--show 4 --first BUS_OFF", "--show prints one case"),
+        ("--show 4 --shard 1/2", "--show prints one case")),
     "campaign": (
         ("", "--runs is missing"),
         ("--runs 3", "--seed is missing"),
@@ -63,6 +65,7 @@ ROWS = {
             "--show 1", "--broken .", "file"))),
     "config": (
         ("--schema --to-kconfig", "give only one of --schema and --to-kconfig"),
+        ("--schema --config nofile", "--schema prints the schema of every configuration"),
         ("log", "unexpected argument 'log'")),
     "demo": (
         ("more", "more"),

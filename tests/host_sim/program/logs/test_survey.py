@@ -501,7 +501,7 @@ class Text(Case):
             survey = json.loads(self.run_good("survey", "--json", *arguments, "log").stdout)
             self.assertEqual((survey["interfaces"], survey["more_interfaces"]),
                              (said.split(" and")[0].rsplit(", 8 frames")[0].split(", "), more))
-        self.assert_refused(self.run_program("survey", "--ai-if", "ai", "log"), "but from " + eight + " and others")
+        self.assert_refused(self.run_program("survey", "--ai-if", "ai", "log"), "frames from " + eight + " and others, but none from ai")
 
     def test_the_proposal_alone(self):
         self.write("log", traffic.log(traffic.frames(2000)))
