@@ -1,10 +1,9 @@
 #include "events.h"
 
-#include <string.h>
-
 #include <zephyr/logging/log.h>
 #include <zephyr/sys/util.h>
 
+#include "agv/names.h"
 #include "agv_board.h"
 #include "agv_revision.h"
 #include "app_version.h"
@@ -69,8 +68,12 @@ static void tell_deviations(const agv_config_t *config) {
                     agv_config_weakens(config, i) ? ", WEAKER" : "");
         }
     }
-    if (memcmp(&config->trips, &defaults.trips, sizeof config->trips) != 0) {
-        LOG_WRN("not the default: the class of one or more faults");
+    for (uint32_t fault = 0u; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
+        const bool is_trip = agv_config_is_trip(config, fault);
+        if (is_trip != agv_config_is_trip(&defaults, fault)) {
+            LOG_WRN("not the default: class of %s: %s", agv_fault_name((agv_fault_t)fault),
+                    is_trip ? "trip" : "warn, WEAKER");
+        }
     }
 }
 
