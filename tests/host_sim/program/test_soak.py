@@ -83,13 +83,16 @@ class Soak(hostsim.Case):
     def test_a_folder_that_vanishes(self):
         """What is not lost is there all the same, and nothing goes on without a checkpoint."""
         work = ("--hours", 1, "--seed", 1, "--shard", f"1/{2 * max(1, hostsim.PART // 4)}")
-        for arguments, stops in (((*work, "--results", "gone/c"), False),
-                                 ((*work, "--results", "a", "--checkpoint", "gone/c"), False),
-                                 ((*self.LONG, "--checkpoint", "gone/c"), True)):
+        for arguments, unfinished, stops in (
+                ((*work, "--results", "gone/c"), "gone/c?*", False),
+                ((*work, "--results", "a", "--checkpoint", "gone/c"), "a?*", False),
+                ((*self.LONG, "--results", "b", "--checkpoint", "gone/c"), "b?*", True)):
             (self.folder / "gone").mkdir()
             with subprocess.Popen([hostsim.PROGRAM, "soak", *map(str, arguments)], cwd=self.folder, stdout=subprocess.PIPE,
                                   stderr=subprocess.PIPE, text=True) as process:
                 self.wait_until_it_looks_for_signals(process.pid)
+                while not list(self.folder.glob(unfinished)) and process.poll() is None:
+                    time.sleep(0.001)
                 shutil.rmtree(self.folder / "gone")
                 if stops:
                     process.send_signal(signal.SIGINT)
