@@ -21,7 +21,7 @@ endfunction()
 
 # agv_add_build_info(TARGET): its sources find agv_board.h (facts) and agv_revision.h (of the sources, as they are when it builds).
 function(agv_add_build_info target)
-  zephyr_get(AGV_REVISION) # with sysbuild it is given to that
+  zephyr_get(AGV_REVISION) # sysbuild does not pass it on to the application by itself
   agv_board(header facts)
   file(MAKE_DIRECTORY ${AGV_GENERATED_DIR})
   file(CONFIGURE OUTPUT ${AGV_GENERATED_DIR}/agv_board.h CONTENT "${facts}" @ONLY)

@@ -20,7 +20,7 @@
 typedef struct {
     uint64_t start_us; /**< the date of the header */
     uint64_t last_us;  /**< relative time stamps: of the last line, since the start */
-    bool has_base;     /**< a line "base ..." was read; before it numbers are hexadecimal, times absolute */
+    bool has_base;     /**< a line "base ..." was read, or its absence noted: hexadecimal, absolute */
     bool is_decimal;   /**< identifiers and data are decimal numbers */
     bool is_relative;  /**< a time stamp counts from the line before */
     char interface[CANDUMP_INTERFACE_MAX + 1u];

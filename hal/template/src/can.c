@@ -24,7 +24,8 @@ bool hal_can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame)
     /*
      * TODO: put the frame in a free mailbox, or in a queue that the transmit interrupt empties. The lowest identifier
      * is sent first. In a queue the frame replaces all with its identifier that were put there more than 1 ms ago, and
-     * takes over the age of the oldest. Never wait. Store the time of the request, for tx_pending_ms. Return false: no room, bus-off, or the side does not exist.
+     * takes over the age of the oldest. Never wait. Store the time of the request, for tx_pending_ms. Return false: no
+     * room, bus-off, or the side does not exist.
      */
     return false;
 }

@@ -125,7 +125,7 @@ static bool read_shown(const yaml_reader_t *reader, const yaml_node_t *node, voi
 static bool read_shows(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     return yaml_reader_list(reader, node, "shows", read_shown, target) &&
            ((((const scenario_t *)target)->shows_count > 0u) ||
-            yaml_reader_fail(reader, node, "shows: names neither a requirement nor a fault"));
+            yaml_reader_fail(reader, node, "shows: give at least one requirement or fault"));
 }
 
 static bool read_description(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {

@@ -42,7 +42,7 @@ bool scenario_parse_vehicle(const yaml_reader_t *reader, const yaml_node_t *node
     }
     if (!vehicle->has_gear && !vehicle->has_mode && !vehicle->has_speed && !vehicle->has_throttle &&
         !vehicle->has_eps_mode && !vehicle->has_angle && !vehicle->has_fastest_park && !vehicle->has_alarms) {
-        return yaml_reader_fail(reader, node, "the vehicle at a time: no value is expected");
+        return yaml_reader_fail(reader, node, "the vehicle at a time: give at least one value, such as gear");
     }
     vehicle->at_ms.to = (vehicle->at_ms.to < vehicle->at_ms.from) ? vehicle->at_ms.from : vehicle->at_ms.to;
     return scenario_parse_when(reader, node, &when, &vehicle->at_ms);

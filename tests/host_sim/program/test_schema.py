@@ -81,7 +81,7 @@ MEANING = {
                                           "above) reset_hold|this fault must stay a (trip|warning)|the value is out of range"),
     "what is not checked with any states": ("states: [{to: INIT, at_ms: [0, 5]}]", "states: any\n  resets: [{accepted: true, at_ms: 5}]",
                                             "cannot be expected together with 'states: any'"),
-    "a vehicle of which nothing is expected": ("  led: [", "  vehicle: [{at_ms: 5}]\n  led: [", "no value is expected"),
+    "a vehicle of which nothing is expected": ("  led: [", "  vehicle: [{at_ms: 5}]\n  led: [", "give at least one value"),
     "a name of more than a line": ("name: n\n", 'name: "a\\nb"\n', "name: must be one line"),
     "a name that is too long in bytes": ("name: n\n", "name: " + "\u00e4" * 60 + "\n", "longer than 95 bytes"),
 }
