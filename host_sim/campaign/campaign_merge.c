@@ -14,7 +14,7 @@
 #include "common/interrupt.h"
 #include "common/report.h"
 
-enum { LOOK_FOR_SIGNALS_EVERY = 1024 };
+enum { RUNS_BETWEEN_LOOKS = 1024 };
 
 /** A file that is being read. */
 typedef struct {
@@ -138,7 +138,7 @@ static bool merge(shard_t *shards, size_t count, campaign_samples_t *samples, ou
         campaign_write_part(merged, &whole);
     }
     for (uint64_t run = 0u; run < whole.runs; run++) {
-        if (((run % LOOK_FOR_SIGNALS_EVERY) == 0u) && interrupt_pending()) {
+        if (((run % RUNS_BETWEEN_LOOKS) == 0u) && interrupt_pending()) {
             return false;
         }
         shard_t *shard = &shards[run % count];

@@ -28,7 +28,7 @@ uint32_t campaign_alternatives(const campaign_row_t *row) {
 }
 
 /** What a placeholder stands for. */
-static void value_of(char letter, const campaign_values_t *values, char *text, size_t size) {
+static void format_value(char letter, const campaign_values_t *values, char *text, size_t size) {
     if (letter == 'n') {
         (void)snprintf(text, size, "%" PRIu32, values->number);
     } else if (letter == 's') {
@@ -50,7 +50,7 @@ static const char *fill_in(const char *at, const campaign_values_t *values, char
             used++;
         } else {
             at++;
-            value_of(*at, values, &words[used], CAMPAIGN_WORDS_SIZE - used);
+            format_value(*at, values, &words[used], CAMPAIGN_WORDS_SIZE - used);
             used += strlen(&words[used]);
         }
     }

@@ -11,7 +11,7 @@ bool campaign_why_init(campaign_why_t *why, const agv_config_t *config) {
     return (why->why != NULL) || report("out of memory");
 }
 
-static void on_event(void *ctx, const session_event_t *event) {
+static void on_why_event(void *ctx, const session_event_t *event) {
     const campaign_why_t *why = ctx;
     why_event(why->why, event);
 }
@@ -21,7 +21,7 @@ static void on_received(void *ctx, uint64_t t_us, hal_can_side_t side, const hal
     why_frame(why->why, side, frame, t_us);
 }
 
-static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
+static void on_why_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
     const campaign_why_t *why = ctx;
     if (from == SCENARIO_FROM_SUPERVISOR) {
         why_sent(why->why, side, frame, t_us);
@@ -29,7 +29,8 @@ static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, co
 }
 
 scenario_watch_t campaign_why_watch(campaign_why_t *why) {
-    return (scenario_watch_t){.on_event = on_event, .on_frame = on_frame, .on_received = on_received, .ctx = why};
+    return (scenario_watch_t){
+        .on_event = on_why_event, .on_frame = on_why_frame, .on_received = on_received, .ctx = why};
 }
 
 /** The trips as --why has them, but for the frames. */

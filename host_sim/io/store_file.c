@@ -166,23 +166,23 @@ bool store_file_load(const char *path, sim_store_t *store, agv_recorder_t *recor
     return size >= 0;
 }
 
-static void put(output_t *output, uint32_t *checksum, const char *text, size_t length) {
+static void put_summed(output_t *output, uint32_t *checksum, const char *text, size_t length) {
     *checksum = agv_crc32(*checksum, text, length);
     (void)output_write(output, text, length);
 }
 
 static void put_item(output_t *output, uint32_t *checksum, const char *word, const uint8_t *bytes, size_t size) {
-    put(output, checksum, word, strlen(word));
+    put_summed(output, checksum, word, strlen(word));
     for (size_t i = 0u; i < size; i++) {
         const char pair[2] = {HEX_DIGITS[bytes[i] >> 4u], HEX_DIGITS[bytes[i] & 0xFu]};
-        put(output, checksum, pair, sizeof pair);
+        put_summed(output, checksum, pair, sizeof pair);
     }
-    put(output, checksum, "\n", 1u);
+    put_summed(output, checksum, "\n", 1u);
 }
 
 void store_file_save(output_t *output, const sim_store_t *store, const agv_recorder_t *recorder) {
     uint32_t checksum = AGV_CRC32_START;
-    put(output, &checksum, FIRST_LINE, strlen(FIRST_LINE));
+    put_summed(output, &checksum, FIRST_LINE, strlen(FIRST_LINE));
     if (store->latch_size > 0u) {
         put_item(output, &checksum, LATCH, store->latch, store->latch_size);
     }

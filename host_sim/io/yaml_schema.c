@@ -73,7 +73,7 @@ static void add_word(json_t *list, const char *word) {
     }
 }
 
-static json_t *words_of(const yaml_shape_t *shape) {
+static json_t *word_schema(const yaml_shape_t *shape) {
     json_t *list = json_array();
     for (size_t i = 0u; (shape->words != NULL) && (shape->words[i].word != NULL); i++) {
         add_word(list, shape->words[i].word);
@@ -87,10 +87,10 @@ static json_t *words_of(const yaml_shape_t *shape) {
 static json_t *flag(void) {
     static const yaml_word_t words[] = {{"true", 1}, {"false", 0}, {NULL, 0}};
     const yaml_shape_t shape = {.words = words};
-    return words_of(&shape);
+    return word_schema(&shape);
 }
 
-static json_t *text_of(const yaml_shape_t *shape) {
+static json_t *text_schema(const yaml_shape_t *shape) {
     json_t *schema = json_pack("{s:[s, s, s], s:i}", "type", "string", "number", "boolean", "minLength", 1);
     if (shape->highest != 0) {
         (void)json_object_set_new(schema, "maxLength", json_integer(shape->highest));
@@ -181,9 +181,9 @@ static json_t *schema_of(const yaml_shape_t *shape) {
         return bits((uint32_t)shape->highest, "|0|[1-9][0-9]*");
     case YAML_KIND_WORD:
     case YAML_KIND_NAMES:
-        return words_of(shape);
+        return word_schema(shape);
     case YAML_KIND_TEXT:
-        return text_of(shape);
+        return text_schema(shape);
     case YAML_KIND_BYTES:
         return bytes_of(shape);
     case YAML_KIND_LIST:

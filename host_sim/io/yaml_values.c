@@ -11,10 +11,10 @@
 #define DECIMAL_SET "0123456789"
 #define HEX_SET DECIMAL_SET "abcdefABCDEF"
 
-enum { SHOWN_MAX = 40, HEX = 16, BYTES_MAX = 8 };
+enum { VALUE_SHOWN_MAX = 40, HEX = 16, BYTES_MAX = 8 };
 
-static const char *text_of(const yaml_reader_t *reader, const yaml_node_t *node, const char *what,
-                           const char *expected) {
+static const char *scalar_text(const yaml_reader_t *reader, const yaml_node_t *node, const char *what,
+                               const char *expected) {
     const char *text = yaml_node_text(node);
 
     if ((text == NULL) || (text[0] == '\0')) {
@@ -25,7 +25,7 @@ static const char *text_of(const yaml_reader_t *reader, const yaml_node_t *node,
 }
 
 const char *yaml_reader_text(const yaml_reader_t *reader, const yaml_node_t *node, const char *what) {
-    return text_of(reader, node, what, "a word or a text");
+    return scalar_text(reader, node, what, "a word or a text");
 }
 
 /** Whether a text is digits and nothing else. */
@@ -55,7 +55,7 @@ static bool read_whole(const char *text, int64_t *number) {
 static bool check_limits(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, const char *text,
                          int64_t lowest, int64_t highest, const int64_t *number) {
     if ((*number < lowest) || (*number > highest)) {
-        return yaml_reader_fail(reader, node, "%s: %.*s is not within %lld to %lld", what, SHOWN_MAX, text,
+        return yaml_reader_fail(reader, node, "%s: %.*s is not within %lld to %lld", what, VALUE_SHOWN_MAX, text,
                                 (long long)lowest, (long long)highest);
     }
     return true;
@@ -63,20 +63,20 @@ static bool check_limits(const yaml_reader_t *reader, const yaml_node_t *node, c
 
 bool yaml_reader_number(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, int64_t lowest,
                         int64_t highest, int64_t *number) {
-    const char *text = text_of(reader, node, what, "a number");
+    const char *text = scalar_text(reader, node, what, "a number");
 
     if (text == NULL) {
         return false;
     }
     if (!read_whole(text, number)) {
-        return yaml_reader_fail(reader, node, "%s: '%.*s' is not a whole number", what, SHOWN_MAX, text);
+        return yaml_reader_fail(reader, node, "%s: '%.*s' is not a whole number", what, VALUE_SHOWN_MAX, text);
     }
     return check_limits(reader, node, what, text, lowest, highest, number);
 }
 
 bool yaml_reader_time(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, duration_unit_t unit,
                       int64_t lowest, int64_t highest, int64_t *number) {
-    const char *text = text_of(reader, node, what, "a time");
+    const char *text = scalar_text(reader, node, what, "a time");
     char problem[DURATION_PROBLEM_SIZE];
     uint64_t value = 0u;
 
@@ -97,7 +97,7 @@ bool yaml_reader_time(const yaml_reader_t *reader, const yaml_node_t *node, cons
 static bool take_bits(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, const char *text,
                       uint64_t value, uint32_t highest, uint32_t *number) {
     if (value > highest) {
-        return yaml_reader_fail(reader, node, "%s: %.*s is above %Xh", what, SHOWN_MAX, text, (unsigned)highest);
+        return yaml_reader_fail(reader, node, "%s: %.*s is above %Xh", what, VALUE_SHOWN_MAX, text, (unsigned)highest);
     }
     *number = (uint32_t)value;
     return true;
@@ -113,7 +113,7 @@ bool yaml_reader_hex(const yaml_reader_t *reader, const yaml_node_t *node, const
     }
     if (!words_bits(text, &value)) {
         return yaml_reader_fail(reader, node, "%s: '%.*s' is not a hexadecimal number such as 168h or 0x168", what,
-                                SHOWN_MAX, text);
+                                VALUE_SHOWN_MAX, text);
     }
     return take_bits(reader, node, what, text, value, highest, number);
 }
@@ -128,7 +128,7 @@ bool yaml_reader_id(const yaml_reader_t *reader, const yaml_node_t *node, const 
     }
     if (!words_id(text, &value)) {
         return yaml_reader_fail(reader, node, "%s: '%.*s' is not an identifier: 168h, 0x168, or decimal 360", what,
-                                SHOWN_MAX, text);
+                                VALUE_SHOWN_MAX, text);
     }
     return take_bits(reader, node, what, text, value, highest, number);
 }
@@ -156,7 +156,7 @@ static bool fail_word(const yaml_reader_t *reader, const yaml_node_t *node, cons
         (void)snprintf(&list[used], sizeof list - used, "%s%s", (used == 0u) ? "" : ", ", word->word);
         suggest_offer(&suggestion, word->word, strlen(word->word));
     }
-    return yaml_reader_fail(reader, node, "%s: '%.*s' is not one of %s%s", what, SHOWN_MAX, text, list,
+    return yaml_reader_fail(reader, node, "%s: '%.*s' is not one of %s%s", what, VALUE_SHOWN_MAX, text, list,
                             suggest_text(&suggestion, meant));
 }
 
@@ -254,7 +254,7 @@ bool yaml_reader_bytes(const yaml_reader_t *reader, const yaml_node_t *node, con
         if ((count == (unsigned)BYTES_MAX) || !take_byte(at, &value[count], (mask != NULL) ? &mask[count] : NULL) ||
             ((at[2] != ' ') && (at[2] != '\0'))) {
             return yaml_reader_fail(reader, node, "%s: '%.*s' is not a list of up to 8 bytes such as \"08 00 FF\"%s",
-                                    what, SHOWN_MAX, text, (mask != NULL) ? ", '..' for any" : "");
+                                    what, VALUE_SHOWN_MAX, text, (mask != NULL) ? ", '..' for any" : "");
         }
         at += (at[2] == ' ') ? 3 : 2;
     }

@@ -15,7 +15,7 @@
 #include "io/event_line.h"
 
 enum {
-    LINE_SIZE = 1024,
+    OUTPUT_LINE_SIZE = 1024,
     FRAMES_MAX = 8192,
     LOOK_EVERY_MS = 100,
     LOOKS_MAX = 3000, /* five minutes for its start; fewer when it prints without end, and no event */
@@ -41,7 +41,7 @@ struct external {
     external_config_t config;
     pid_t pid;  /**< leads a group of its own; 0: it does not run */
     int output; /**< what it prints; -1: none */
-    char line[LINE_SIZE];
+    char line[OUTPUT_LINE_SIZE];
     size_t line_length;
     bool has_reported;
     bool output_closed;

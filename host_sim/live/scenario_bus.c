@@ -45,14 +45,14 @@ typedef struct {
     vehicle_bus_t vehicle;
 } run_t;
 
-static uint64_t now_ms(const run_t *run) {
+static uint64_t scenario_ms(const run_t *run) {
     return linux_clock_now_us(&run->clock) / US_PER_MS;
 }
 
-static void on_event(void *ctx, const session_event_t *reported) {
+static void on_supervisor_event(void *ctx, const session_event_t *reported) {
     run_t *run = ctx;
     session_event_t event = *reported;
-    event.t_ms = run->has_begun ? now_ms(run) : 0u;
+    event.t_ms = run->has_begun ? scenario_ms(run) : 0u;
     (void)scenario_events_note(&run->events, &event);
     scenario_check_event(run->check, &event);
     if (run->watch->on_event != NULL) {
@@ -60,7 +60,7 @@ static void on_event(void *ctx, const session_event_t *reported) {
     }
 }
 
-static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t at_us) {
+static void on_supervisor_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t at_us) {
     const run_t *run = ctx;
     const int64_t since_us = run->node_began_us + (int64_t)at_us;
     const uint64_t t_us = (since_us > 0) ? (uint64_t)since_us : 0u;
@@ -91,8 +91,8 @@ static bool open_external(run_t *run) {
             {[HAL_CAN_VEHICLE] = interface_of(run, HAL_CAN_VEHICLE), [HAL_CAN_AI] = interface_of(run, HAL_CAN_AI)},
         .clock = &run->clock,
         .delay_us = (uint64_t)run->bus->tolerance_ms * US_PER_MS,
-        .on_event = on_event,
-        .on_sent = on_sent,
+        .on_event = on_supervisor_event,
+        .on_sent = on_supervisor_sent,
         .ctx = run,
     };
     run->external = external_open(&config);
@@ -104,8 +104,8 @@ static bool open_node(run_t *run) {
         .config = &run->scenario->config,
         .interfaces =
             {[HAL_CAN_VEHICLE] = interface_of(run, HAL_CAN_VEHICLE), [HAL_CAN_AI] = interface_of(run, HAL_CAN_AI)},
-        .on_event = on_event,
-        .on_sent = on_sent,
+        .on_event = on_supervisor_event,
+        .on_sent = on_supervisor_sent,
         .ctx = run,
     };
     run->node = node_open(&config);
@@ -121,7 +121,7 @@ static void close_node(run_t *run) {
     if (run->node != NULL) {
         live_files_leave(&run->files, &run->loop);
         events_summarise(node_session(run->node), run->summary);
-        run->summary->t_ms = now_ms(run);
+        run->summary->t_ms = scenario_ms(run);
         node_close(run->node);
         run->node = NULL;
     }
@@ -276,7 +276,7 @@ static void check(run_t *run, uint64_t t_ms) {
 static bool advance(run_t *run) {
     const uint32_t what = linux_loop_wait(&run->loop);
     const bool is_tick = (what & LINUX_LOOP_TICK) != 0u;
-    const uint64_t t_ms = now_ms(run);
+    const uint64_t t_ms = scenario_ms(run);
     if (((what & LINUX_LOOP_SIGNAL) != 0u) || interrupt_pending()) {
         return report("interrupted");
     }
@@ -291,7 +291,7 @@ static bool advance(run_t *run) {
     return true;
 }
 
-static bool prepare(run_t *run) {
+static bool prepare_bus(run_t *run) {
     run->loop_is_open = linux_loop_open(&run->loop);
     if (!run->loop_is_open) {
         return report("cannot create the tick timer: %s", strerror(errno));
@@ -345,8 +345,8 @@ bool scenario_bus_play(const scenario_bus_t *bus, scenario_check_t *check, const
         run.controllers[side].fd = -1;
         run.recovered_ms[side] = UINT64_MAX;
     }
-    bool good = prepare(&run);
-    while (good && (now_ms(&run) <= run.scenario->duration_ms)) {
+    bool good = prepare_bus(&run);
+    while (good && (scenario_ms(&run) <= run.scenario->duration_ms)) {
         good = advance(&run);
     }
     if (good && (run.external != NULL)) {

@@ -32,10 +32,10 @@ typedef struct {
     bool waits_for_typed; /**< the loop reports typed lines; else they are polled with every tick */
     bool was_down[HAL_CAN_SIDES];
     bool quits;
-} run_t;
+} vehicle_run_t;
 
 /** Do the action of a --fault or of a typed line. */
-static void do_action(run_t *run, const vehicle_words_t *words) {
+static void do_action(vehicle_run_t *run, const vehicle_words_t *words) {
     const vehicle_action_t *action = &words->step.vehicle;
 
     const bool done = vehicle_bus_do(&run->bus, action);
@@ -50,7 +50,7 @@ static void do_action(run_t *run, const vehicle_words_t *words) {
     }
 }
 
-static void act_on_faults(run_t *run, uint64_t now_ms) {
+static void act_on_faults(vehicle_run_t *run, uint64_t now_ms) {
     const vehicle_run_request_t *request = run->request;
 
     while ((run->next_fault < request->fault_count) && (request->faults[run->next_fault].step.at_ms <= now_ms)) {
@@ -59,13 +59,13 @@ static void act_on_faults(run_t *run, uint64_t now_ms) {
     }
 }
 
-static void vehicle_action(run_t *run, vehicle_do_t what) {
+static void vehicle_action(vehicle_run_t *run, vehicle_do_t what) {
     const vehicle_action_t action = {.what = what, .gear = AGV_GEAR_D, .throttle_permille = THROTTLE_PERMILLE};
     (void)vehicle_bus_do(&run->bus, &action);
 }
 
 /** The operator engages the autopilot; while the bus commands autopilot off he tries again. */
-static void operate(run_t *run, uint64_t now_ms) {
+static void operate(vehicle_run_t *run, uint64_t now_ms) {
     vehicle_state_t state;
 
     if (now_ms < run->engage_ms) {
@@ -86,7 +86,7 @@ static void operate(run_t *run, uint64_t now_ms) {
     }
 }
 
-static void show_links(run_t *run) {
+static void show_links(vehicle_run_t *run) {
     for (unsigned side = 0u; side < (unsigned)HAL_CAN_SIDES; side++) {
         if (run->bus.is_down[side] != run->was_down[side]) {
             run->was_down[side] = run->bus.is_down[side];
@@ -97,7 +97,7 @@ static void show_links(run_t *run) {
 }
 
 /** Look at the vehicle, and print what has changed. */
-static void show(run_t *run) {
+static void show(vehicle_run_t *run) {
     vehicle_view_t view;
 
     vehicle_bus_view(&run->bus, &view);
@@ -106,7 +106,7 @@ static void show(run_t *run) {
 }
 
 /** A line was typed. */
-static void on_typed_line(run_t *run, const char *line) {
+static void on_typed_line(vehicle_run_t *run, const char *line) {
     vehicle_words_t words;
 
     vehicle_show_clear(&run->show, true);
@@ -135,7 +135,7 @@ static void on_typed_line(run_t *run, const char *line) {
 }
 
 /** Some of the lines that are there: the vehicle drives on while more of them come than can be taken. */
-static void take_typed(run_t *run) {
+static void take_typed(vehicle_run_t *run) {
     typed_lines_t *typed = &run->typed;
     const char *line = "";
 
@@ -159,7 +159,7 @@ static void take_typed(run_t *run) {
  * A millisecond has passed. What has arrived in it is looked at now: the sockets are not waited for, which saves half
  * of the work, and frames carry the stamps of their arrival. @return false: an interface is gone; was reported
  */
-static bool tick(run_t *run) {
+static bool tick(vehicle_run_t *run) {
     const uint64_t now_ms = vehicle_bus_now_ms(&run->bus);
 
     act_on_faults(run, now_ms);
@@ -169,7 +169,7 @@ static bool tick(run_t *run) {
     return there;
 }
 
-static void show_end(run_t *run) {
+static void show_end(vehicle_run_t *run) {
     const vehicle_bus_t *bus = &run->bus;
 
     (void)printf("%" PRIu64 ".%03" PRIu64 " s; frames: %" PRIu64 " sent, %" PRIu64 " refused by the kernel\n",
@@ -177,7 +177,7 @@ static void show_end(run_t *run) {
 }
 
 /** No signal, no `quit`, the time is not over, and standard output works. */
-static bool goes_on(const run_t *run, uint32_t events) {
+static bool goes_on(const vehicle_run_t *run, uint32_t events) {
     const uint64_t for_ms = run->request->bus.for_ms;
 
     return ((events & LINUX_LOOP_SIGNAL) == 0u) && !run->quits && (ferror(stdout) == 0) &&
@@ -185,7 +185,7 @@ static bool goes_on(const run_t *run, uint32_t events) {
 }
 
 /** Go on until the end. @return false: an interface is gone; was reported */
-static bool run_until_end(run_t *run) {
+static bool run_until_end(vehicle_run_t *run) {
     uint32_t events = LINUX_LOOP_TICK;
     bool there = true;
 
@@ -201,7 +201,7 @@ static bool run_until_end(run_t *run) {
     return there;
 }
 
-static bool open_bus(run_t *run) {
+static bool open_bus(vehicle_run_t *run) {
     const vehicle_run_request_t *request = run->request;
     vehicle_bus_config_t config = {
         .interfaces = {[HAL_CAN_VEHICLE] = request->bus.interfaces[HAL_CAN_VEHICLE],
@@ -215,7 +215,7 @@ static bool open_bus(run_t *run) {
     return vehicle_bus_open(&run->bus, &config);
 }
 
-static bool run_on_bus(run_t *run) {
+static bool run_on_bus(vehicle_run_t *run) {
     vehicle_view_t view;
 
     monitor_companion_show(&run->screen);
@@ -231,7 +231,7 @@ static bool run_on_bus(run_t *run) {
 }
 
 /** Start the screen, which is a process of its own: before anything is opened. @return false: reported */
-static bool open_screen(run_t *run) {
+static bool open_vehicle_screen(vehicle_run_t *run) {
     const vehicle_run_request_t *request = run->request;
     const monitor_companion_config_t config = {
         .title = "vehicle",
@@ -244,10 +244,10 @@ static bool open_screen(run_t *run) {
 }
 
 status_t vehicle_run_nodes(const vehicle_run_request_t *request) {
-    run_t run = {.request = request, .engage_ms = request->manual ? UINT64_MAX : ENGAGE_MS};
+    vehicle_run_t run = {.request = request, .engage_ms = request->manual ? UINT64_MAX : ENGAGE_MS};
     bool good = false;
 
-    if (!open_screen(&run)) {
+    if (!open_vehicle_screen(&run)) {
         return STATUS_UNUSABLE;
     }
     typed_lines_init(&run.typed, (run.screen.child != 0) ? monitor_companion_typed(&run.screen) : STDIN_FILENO);

@@ -7,7 +7,7 @@ typedef struct {
     const char *right;
 } line_t;
 
-static const line_t lines[] = {
+static const line_t help_lines[] = {
     {"age", "longest gap of the last second, or time since the last frame, ms"},
     {"deadline", "a bar that is full at the deadline; red and LATE: exceeded"},
     {"gap", "shortest and longest time between two frames, ms"},
@@ -30,8 +30,8 @@ static const line_t lines[] = {
 enum { LEFT = 2, RIGHT = 14 };
 
 void monitor_help_draw(monitor_view_t *view, int y) {
-    for (size_t i = 0u; i < sizeof lines / sizeof lines[0]; i++) {
-        (void)monitor_view_put(view, y + (int)i, LEFT, STYLE_BOLD, lines[i].left);
-        (void)monitor_view_put(view, y + (int)i, RIGHT, STYLE_PLAIN, lines[i].right);
+    for (size_t i = 0u; i < sizeof help_lines / sizeof help_lines[0]; i++) {
+        (void)monitor_view_put(view, y + (int)i, LEFT, STYLE_BOLD, help_lines[i].left);
+        (void)monitor_view_put(view, y + (int)i, RIGHT, STYLE_PLAIN, help_lines[i].right);
     }
 }

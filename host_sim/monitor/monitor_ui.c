@@ -33,12 +33,12 @@ bool monitor_ui_is_paused(const monitor_ui_t *ui) {
     return ui->page.is_paused;
 }
 
-static const monitor_t *shown(const monitor_ui_t *ui) {
+static const monitor_t *shown_monitor(const monitor_ui_t *ui) {
     return (ui->held != NULL) ? ui->held : ui->monitor;
 }
 
-static void scroll(monitor_ui_t *ui, int lines) {
-    const size_t length = monitor_log_length(&shown(ui)->log);
+static void scroll_log(monitor_ui_t *ui, int lines) {
+    const size_t length = monitor_log_length(&shown_monitor(ui)->log);
     const size_t page = (ui->log_lines > 0) ? (size_t)ui->log_lines : 1u;
     const size_t most = (length > page) ? length - page : 0u;
     const size_t now = ui->page.scrolled;
@@ -71,23 +71,23 @@ static void type(monitor_ui_t *ui, int key) {
     }
 }
 
-static void move(monitor_ui_t *ui, int key) {
+static void move_log(monitor_ui_t *ui, int key) {
     const int page = (ui->log_lines > 1) ? ui->log_lines - 1 : 1;
     switch (key) {
     case MONITOR_KEY_UP:
-        scroll(ui, 1);
+        scroll_log(ui, 1);
         break;
     case MONITOR_KEY_DOWN:
-        scroll(ui, -1);
+        scroll_log(ui, -1);
         break;
     case MONITOR_KEY_PAGE_UP:
-        scroll(ui, page);
+        scroll_log(ui, page);
         break;
     case MONITOR_KEY_PAGE_DOWN:
-        scroll(ui, -page);
+        scroll_log(ui, -page);
         break;
     case MONITOR_KEY_HOME:
-        scroll(ui, (int)MONITOR_LOG_ENTRIES);
+        scroll_log(ui, (int)MONITOR_LOG_ENTRIES);
         break;
     case MONITOR_KEY_END:
         ui->page.scrolled = 0u;
@@ -125,7 +125,7 @@ static void obey(monitor_ui_t *ui, int key) {
         ui->page.is_typing = ui->page.can_type;
         break;
     default:
-        move(ui, key);
+        move_log(ui, key);
         break;
     }
 }
@@ -156,8 +156,8 @@ void monitor_ui_draw(monitor_ui_t *ui, uint64_t now_ms) {
     monitor_screen_size(&width, &height);
     ui->draw_ms = now_ms + (uint64_t)((width * height > (int)LARGE_CELLS) ? DRAW_LARGE_EVERY_MS : DRAW_EVERY_MS);
     monitor_view_clear(&ui->view, width, height);
-    ui->log_lines = monitor_page_log_lines(shown(ui), ui->view.height);
-    monitor_page_draw(&ui->view, shown(ui), &ui->page);
+    ui->log_lines = monitor_page_log_lines(shown_monitor(ui), ui->view.height);
+    monitor_page_draw(&ui->view, shown_monitor(ui), &ui->page);
     monitor_screen_show(&ui->view);
 }
 

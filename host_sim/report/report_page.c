@@ -57,7 +57,7 @@ static json_t *trips_json(const report_page_t *page, const why_t *why, const ser
     return trips;
 }
 
-static json_t *faults_json(const why_t *why) {
+static json_t *found_faults_json(const why_t *why) {
     json_t *faults = json_array();
     for (size_t i = 0u; i < why_fault_count(why); i++) {
         const why_fault_t *fault = why_fault(why, i);
@@ -123,7 +123,7 @@ static json_t *page_json(const report_page_t *page, const why_t *why, const seri
     json_put(object, "supervised_us", json_uint(why_supervised_us(why)));
     json_put(object, "states", states_json(why));
     json_put(object, "trips", trips_json(page, why, series));
-    json_put(object, "faults", faults_json(why));
+    json_put(object, "faults", found_faults_json(why));
     json_put(object, "settings", report_settings_json(page->config));
     json_put(object, "messages", (page->messages != NULL) ? json_deep_copy(page->messages) : json_null());
     json_put(object, "series", series_json(series));

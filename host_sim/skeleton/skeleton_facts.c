@@ -15,7 +15,7 @@ enum { LISTEN_MS = 500 };
 
 /* --- the first reading: what the supervisor does --- */
 
-static void on_event(void *ctx, const session_event_t *event) {
+static void on_fact_event(void *ctx, const session_event_t *event) {
     skeleton_facts_t *facts = ctx;
     const agv_event_t *recorded = &event->recorded;
 
@@ -195,7 +195,7 @@ static bool read_again(skeleton_facts_t *facts) {
 }
 
 bool skeleton_facts_read(skeleton_facts_t *facts, const skeleton_request_t *request) {
-    const replay_listener_t listener = {.on_event = on_event, .on_end = on_end, .ctx = facts};
+    const replay_listener_t listener = {.on_event = on_fact_event, .on_end = on_end, .ctx = facts};
     const replay_request_t replay = {.log = request->log,
                                      .ai_interface = request->ai_interface,
                                      .skip_bad_lines = request->skip_bad_lines,

@@ -9,7 +9,7 @@
 #include "text/units.h"
 #include "text/words.h"
 
-enum { MEDIAN = 500, CYCLES = 3, PERMILLE = 1000, OUTAGES_MAX = 10, ROUND_MS = 5, STATUS_ID_LOWEST = 0x7F1 };
+enum { MEDIAN_PERMILLE = 500, CYCLES = 3, PERMILLE = 1000, OUTAGES_MAX = 10, ROUND_MS = 5, STATUS_ID_LOWEST = 0x7F1 };
 
 __attribute__((format(printf, 3, 4))) static void reason(proposal_t *proposal, uint32_t setting, const char *format,
                                                          ...) {
@@ -19,7 +19,7 @@ __attribute__((format(printf, 3, 4))) static void reason(proposal_t *proposal, u
     va_end(arguments);
 }
 
-__attribute__((format(printf, 2, 3))) static void note(proposal_t *proposal, const char *format, ...) {
+__attribute__((format(printf, 2, 3))) static void add_note(proposal_t *proposal, const char *format, ...) {
     if (proposal->note_count < PROPOSAL_NOTES_MAX) {
         va_list arguments;
         va_start(arguments, format);
@@ -38,7 +38,7 @@ typedef struct {
 
 static habit_t habit_of(const gaps_t *gaps) {
     const uint64_t rare = gaps->count / (uint64_t)PERMILLE;
-    habit_t habit = {.cycle_us = gaps_quantile_us(gaps, MEDIAN)};
+    habit_t habit = {.cycle_us = gaps_quantile_us(gaps, MEDIAN_PERMILLE)};
     habit.usual_us = gaps_without_longest_us(gaps, (rare > (uint64_t)OUTAGES_MAX) ? rare : (uint64_t)OUTAGES_MAX);
     habit.need_us = habit.cycle_us * CYCLES;
     if ((habit.usual_us <= habit.cycle_us * CYCLES) && ((habit.usual_us * 3u) / 2u > habit.need_us)) {
@@ -54,11 +54,11 @@ static void note_late(proposal_t *proposal, const traffic_id_t *entry, const cha
     if ((watch->gaps.count > 0u) && (watch->gaps.longest_us > deadline_us)) {
         const uint64_t longer = gaps_longer_than(&watch->gaps, deadline_us);
         const uint64_t late = (longer > 0u) ? longer : 1u;
-        const bool is_slow = gaps_quantile_us(&watch->gaps, MEDIAN) > deadline_us;
-        note(proposal, "%03Xh %s: %" PRIu64 " gap%s of up to %.1f ms, the longest at %.3f s; %s %s%s", entry->id, name,
-             late, words_plural(late), ms_of_us(watch->gaps.longest_us), s_of_us(watch->gaps.longest_at_us),
-             is_slow ? "a sender that is too slow for" : "an outage, not a slow sender:",
-             agv_setting_info(watch->setting)->name, is_slow ? "" : " stays");
+        const bool is_slow = gaps_quantile_us(&watch->gaps, MEDIAN_PERMILLE) > deadline_us;
+        add_note(proposal, "%03Xh %s: %" PRIu64 " gap%s of up to %.1f ms, the longest at %.3f s; %s %s%s", entry->id,
+                 name, late, words_plural(late), ms_of_us(watch->gaps.longest_us), s_of_us(watch->gaps.longest_at_us),
+                 is_slow ? "a sender that is too slow for" : "an outage, not a slow sender:",
+                 agv_setting_info(watch->setting)->name, is_slow ? "" : " stays");
     }
 }
 
@@ -71,9 +71,9 @@ static void propose_deadline(proposal_t *proposal, const traffic_id_t *entry) {
         return;
     }
     if (watch->gaps.count < PROPOSAL_GAPS_MIN) {
-        note(proposal, "%03Xh %s: %" PRIu64 " gap%s%s, too few to evaluate its deadline", entry->id, name,
-             watch->gaps.count, words_plural(watch->gaps.count),
-             (watch->when == TRAFFIC_ENGAGED) ? " while engaged" : "");
+        add_note(proposal, "%03Xh %s: %" PRIu64 " gap%s%s, too few to evaluate its deadline", entry->id, name,
+                 watch->gaps.count, words_plural(watch->gaps.count),
+                 (watch->when == TRAFFIC_ENGAGED) ? " while engaged" : "");
     } else {
         proposal->judged++;
         const habit_t habit = habit_of(&watch->gaps);
@@ -87,8 +87,8 @@ static void propose_deadline(proposal_t *proposal, const traffic_id_t *entry) {
                    ms_of_us(habit.cycle_us), ms_of_us(habit.usual_us), need_ms);
         }
         if (need_ms > info->highest) {
-            note(proposal, "%03Xh %s needs %" PRIu64 " ms, and %s may be %u ms at most: the sender must be faster",
-                 entry->id, name, need_ms, info->name, info->highest);
+            add_note(proposal, "%03Xh %s needs %" PRIu64 " ms, and %s may be %u ms at most: the sender must be faster",
+                     entry->id, name, need_ms, info->name, info->highest);
         }
     }
     note_late(proposal, entry, name);
@@ -108,16 +108,16 @@ static void propose_counter(proposal_t *proposal, const traffic_id_t *entry, uin
         }
         break;
     case COUNTER_ANY:
-        note(proposal,
-             "%03Xh %s: %" PRIu64 " of %" PRIu64
-             " steps of its counter %s not by 1 to 3, the first at %.3f s: %s stays any",
-             entry->id, name, use->other_steps, use->steps + use->other_steps,
-             (use->other_steps == 1u) ? "was" : "were", s_of_us(use->other_at_us),
-             agv_setting_info((uint16_t)setting)->name);
+        add_note(proposal,
+                 "%03Xh %s: %" PRIu64 " of %" PRIu64
+                 " steps of its counter %s not by 1 to 3, the first at %.3f s: %s stays any",
+                 entry->id, name, use->other_steps, use->steps + use->other_steps,
+                 (use->other_steps == 1u) ? "was" : "were", s_of_us(use->other_at_us),
+                 agv_setting_info((uint16_t)setting)->name);
         break;
     case COUNTER_STUCK:
-        note(proposal, "%03Xh %s: its alive counter never changes, so it is no heartbeat; its sender must count",
-             entry->id, name);
+        add_note(proposal, "%03Xh %s: its alive counter never changes, so it is no heartbeat; its sender must count",
+                 entry->id, name);
         break;
     default:
         break;
@@ -130,17 +130,18 @@ static void note_values(proposal_t *proposal, const traffic_id_t *entry) {
         const signal_info_t *info = signals_info(entry->message, i);
         const traffic_range_t *range = &entry->ranges[i];
         if ((info->kind == SIGNAL_ALARM) && (range->set > 0u)) {
-            note(proposal, "%s was set in %" PRIu64 " frame%s, first at %.3f s: its class stays %s", info->name,
-                 range->set, words_plural(range->set), s_of_us(range->set_at_us),
-                 agv_class_name(agv_config_is_trip(&proposal->config, info->fault) ? AGV_CLASS_TRIP : AGV_CLASS_WARN));
+            add_note(
+                proposal, "%s was set in %" PRIu64 " frame%s, first at %.3f s: its class stays %s", info->name,
+                range->set, words_plural(range->set), s_of_us(range->set_at_us),
+                agv_class_name(agv_config_is_trip(&proposal->config, info->fault) ? AGV_CLASS_TRIP : AGV_CLASS_WARN));
         } else if (range->invalid > 0u) {
-            note(proposal, "%03Xh %s: %" PRIu64 " frame%s with an invalid %s; no setting allows that", entry->id,
-                 signals_message_name(entry->message), range->invalid, words_plural(range->invalid), info->name);
+            add_note(proposal, "%03Xh %s: %" PRIu64 " frame%s with an invalid %s; no setting allows that", entry->id,
+                     signals_message_name(entry->message), range->invalid, words_plural(range->invalid), info->name);
         }
     }
     if (entry->malformed > 0u) {
-        note(proposal, "%03Xh %s: %" PRIu64 " frame%s of another length or kind; they count as missing", entry->id,
-             signals_message_name(entry->message), entry->malformed, words_plural(entry->malformed));
+        add_note(proposal, "%03Xh %s: %" PRIu64 " frame%s of another length or kind; they count as missing", entry->id,
+                 signals_message_name(entry->message), entry->malformed, words_plural(entry->malformed));
     }
 }
 
@@ -175,12 +176,13 @@ static void propose_identifier(proposal_t *proposal, uint32_t message, const ide
         (void)snprintf(&candidates[strlen(candidates)], 8u, "%s%03Xh", (i > 0u) ? ", " : "", found->candidates[i].id);
     }
     if (found->count > 0u) {
-        note(proposal, "%s %.80s; candidates: %s%s. Look it up in the vehicle's document, and set %s", name,
-             absence_of(found, absence), candidates, (found->left_out > 0u) ? " and more" : "",
-             agv_setting_info((uint16_t)setting)->name);
+        add_note(proposal, "%s %.80s; candidates: %s%s. Look it up in the vehicle's document, and set %s", name,
+                 absence_of(found, absence), candidates, (found->left_out > 0u) ? " and more" : "",
+                 agv_setting_info((uint16_t)setting)->name);
     } else {
-        note(proposal, "%s %.80s, and no identifier here could be it. Look it up in the vehicle's document, and set %s",
-             name, absence_of(found, absence), agv_setting_info((uint16_t)setting)->name);
+        add_note(proposal,
+                 "%s %.80s, and no identifier here could be it. Look it up in the vehicle's document, and set %s", name,
+                 absence_of(found, absence), agv_setting_info((uint16_t)setting)->name);
     }
 }
 
@@ -196,8 +198,9 @@ static void propose_status_id(proposal_t *proposal, const traffic_t *traffic) {
     for (size_t i = 0u; traffic_at(traffic, i) != NULL; i++) {
         const traffic_id_t *entry = traffic_at(traffic, i);
         if ((entry->message == message) && (entry->ranges[0].invalid == 0u) && (entry->count > 0u)) {
-            note(proposal,
-                 "%03Xh carries status frames of a supervisor: was a supervisor on the bus during the recording?", id);
+            add_note(proposal,
+                     "%03Xh carries status frames of a supervisor: was a supervisor on the bus during the recording?",
+                     id);
             return;
         }
     }
@@ -259,12 +262,12 @@ void proposal_make(proposal_t *proposal, const traffic_t *traffic, const agv_con
         }
     }
     if (traffic_totals(traffic).engagements == 0u) {
-        note(proposal, "autopilot was never engaged: the deadlines of the commands are not judged");
+        add_note(proposal, "autopilot was never engaged: the deadlines of the commands are not judged");
     }
     propose_status_id(proposal, traffic);
     keep_given(proposal);
 }
 
 void proposal_note(proposal_t *proposal, const char *text) {
-    note(proposal, "%s", text);
+    add_note(proposal, "%s", text);
 }

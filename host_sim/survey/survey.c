@@ -118,7 +118,7 @@ static bool check_ai_side(const survey_result_t *result) {
     return log_sides_check_heard(result->request->ai_interface, result->source.has_ai_side, names);
 }
 
-static bool run(survey_result_t *result) {
+static bool run_passes(survey_result_t *result) {
     const survey_request_t *request = result->request;
     if (!open_config(result) || !gather(result, &request->config)) {
         return false;
@@ -142,7 +142,7 @@ status_t survey_run(const survey_request_t *request) {
         return STATUS_UNUSABLE;
     }
     result->request = request;
-    const bool good = run(result);
+    const bool good = run_passes(result);
     output_discard(&result->config_file);
     observation_free(&result->observation);
     free(result);

@@ -6,7 +6,7 @@
 
 #include "text/hex.h"
 
-enum { DECIMAL = 10, HEX_DIGIT_BITS = 4, HEX_DIGITS_MAX = 16 };
+enum { DECIMAL_BASE = 10, HEX_DIGIT_BITS = 4, HEX_DIGITS_MAX = 16 };
 
 size_t words_at(const char *words, size_t index, const char **word) {
     const char *at = words;
@@ -37,10 +37,10 @@ bool words_decimal(const char *text, uint64_t lowest, uint64_t highest, uint64_t
     const char *at = text;
     for (; (*at >= '0') && (*at <= '9'); at++) {
         const uint64_t digit = (uint64_t)(*at - '0');
-        if (value > (UINT64_MAX - digit) / DECIMAL) {
+        if (value > (UINT64_MAX - digit) / DECIMAL_BASE) {
             return false;
         }
-        value = (value * DECIMAL) + digit;
+        value = (value * DECIMAL_BASE) + digit;
     }
     *number = value;
     return (at != text) && (*at == '\0') && (value >= lowest) && (value <= highest);

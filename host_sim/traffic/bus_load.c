@@ -4,7 +4,7 @@
 
 #include "text/units.h"
 
-enum { BITS_PER_BYTE = 8, BITS_BETWEEN_STUFF_BITS = 4, PERCENT = 100 };
+enum { BYTE_BITS = 8, BITS_BETWEEN_STUFF_BITS = 4, PERCENT = 100 };
 
 /** Bits of a frame beside its data: those that may be stuffed, and the others (delimiters, end, space). */
 enum { STANDARD_STUFFABLE = 34, EXTENDED_STUFFABLE = 54, FD_MORE = 13, NOT_STUFFABLE = 13 };
@@ -16,7 +16,7 @@ void bus_load_frame(bus_load_t *load, const hal_can_frame_t *frame, uint64_t t_u
     const bool is_remote = (frame->flags & HAL_CAN_REMOTE) != 0u;
     const uint32_t header = ((frame->flags & HAL_CAN_EXTENDED) != 0u) ? EXTENDED_STUFFABLE : STANDARD_STUFFABLE;
     const uint32_t more = ((frame->flags & HAL_CAN_FD) != 0u) ? FD_MORE : 0u;
-    const uint32_t stuffable = header + more + (is_remote ? 0u : ((uint32_t)frame->length * BITS_PER_BYTE));
+    const uint32_t stuffable = header + more + (is_remote ? 0u : ((uint32_t)frame->length * BYTE_BITS));
     const uint64_t bits = (uint64_t)stuffable + NOT_STUFFABLE;
     const uint64_t stuffed_bits = bits + ((stuffable - 1u) / BITS_BETWEEN_STUFF_BITS);
     if (t_us / US_PER_S != load->second) {

@@ -4,7 +4,7 @@
 #include "text/units.h"
 #include "traffic/traffic.h"
 
-enum { MEDIAN = 500, P999 = 999, BITS_PER_WORD = 32, WORD_CHOICES = 256 };
+enum { MEDIAN = 500, P999 = 999, WORD_BITS = 32, CHOICES = 256 };
 
 /** A time in milliseconds with three decimals. */
 static json_t *ms_of(uint64_t us) {
@@ -40,8 +40,8 @@ static json_t *counter_json(const counter_use_t *use) {
 /** The words and invalid values of a choice that were seen. */
 static json_t *words_json(uint32_t message, size_t index, const traffic_range_t *range) {
     json_t *words = json_array();
-    for (uint32_t raw = 0u; raw < (uint32_t)WORD_CHOICES; raw++) {
-        if (((range->words[raw / BITS_PER_WORD] >> (raw % BITS_PER_WORD)) & 1u) != 0u) {
+    for (uint32_t raw = 0u; raw < (uint32_t)CHOICES; raw++) {
+        if (((range->words[raw / WORD_BITS] >> (raw % WORD_BITS)) & 1u) != 0u) {
             char text[SIGNALS_VALUE_SIZE];
             signals_raw_text(text, message, index, raw);
             json_add(words, json_string(text));

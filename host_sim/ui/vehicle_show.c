@@ -12,7 +12,7 @@
 #include "scenario/parse/scenario_parse.h"
 #include "text/units.h"
 
-enum { DRAW_EVERY_MS = 100, WHAT_SIZE = 320, STATUS_SIZE = 160, WIDTH = 80, ALARM_BITS = 8 };
+enum { DRAW_EVERY_MS = 100, LINE_SIZE = 320, STATUS_SIZE = 160, DEFAULT_WIDTH = 80, ALARM_BITS = 8 };
 
 /* The terminal: one line up, to its begin; clear to the line's end; clear all below; keep the cursor's place. */
 #define UP "\033[1A\r"
@@ -34,7 +34,7 @@ static const char *gear_word(uint8_t gear) {
     return "?";
 }
 
-static const char *mode_word(const vehicle_view_t *view) {
+static const char *vehicle_mode_word(const vehicle_view_t *view) {
     return view->autopilot ? "autopilot" : "manual";
 }
 
@@ -66,8 +66,8 @@ static void write_status(const vehicle_view_t *view, char status[STATUS_SIZE]) {
         }
     }
     (void)snprintf(status, STATUS_SIZE, "gear %s, %s, %s m/s, throttle %u %%, steering %s deg, alarms: %.60s",
-                   gear_word(view->gear), mode_word(view), speed, (unsigned)(view->throttle_permille / 10u), angle,
-                   (rest[0] != '\0') ? rest : "none");
+                   gear_word(view->gear), vehicle_mode_word(view), speed, (unsigned)(view->throttle_permille / 10u),
+                   angle, (rest[0] != '\0') ? rest : "none");
     rest[0] = '\0';
     for (int n = 0; n < VEHICLE_NODES; n++) {
         if (!view->running[n]) {
@@ -95,7 +95,7 @@ void vehicle_show_clear(vehicle_show_t *show, bool line_typed) {
 }
 
 void vehicle_show_event(vehicle_show_t *show, uint64_t t_ms, const char *who, const char *format, ...) {
-    char what[WHAT_SIZE];
+    char what[LINE_SIZE];
     char speed[16];
     va_list arguments;
 
@@ -105,7 +105,7 @@ void vehicle_show_event(vehicle_show_t *show, uint64_t t_ms, const char *who, co
     vehicle_show_clear(show, false);
     write_decimal(speed, show->view.speed_mm_s / 10, 100, 2);
     (void)printf("%5" PRIu64 ".%03" PRIu64 " s  %-10s  %-44s  %s %-9s %s m/s\n", t_ms / MS_PER_S, t_ms % MS_PER_S, who,
-                 what, gear_word(show->view.gear), mode_word(&show->view), speed);
+                 what, gear_word(show->view.gear), vehicle_mode_word(&show->view), speed);
 }
 
 static void show_alarms(vehicle_show_t *show, uint64_t t_ms, uint8_t before) {
@@ -129,7 +129,7 @@ static void show_changes(vehicle_show_t *show, uint64_t t_ms, const vehicle_view
         }
     }
     if (now->autopilot != before->autopilot) {
-        vehicle_show_event(show, t_ms, "vcu", "%s", mode_word(now));
+        vehicle_show_event(show, t_ms, "vcu", "%s", vehicle_mode_word(now));
     }
     if (now->gear != before->gear) {
         vehicle_show_event(show, t_ms, "vcu", "gear %s", gear_word(now->gear));
@@ -147,7 +147,7 @@ static void show_changes(vehicle_show_t *show, uint64_t t_ms, const vehicle_view
 static int columns(void) {
     struct winsize size;
     const bool known = (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) && (size.ws_col > 0u);
-    return (known ? (int)size.ws_col : (int)WIDTH) - 1;
+    return (known ? (int)size.ws_col : (int)DEFAULT_WIDTH) - 1;
 }
 
 /** Draw the status line, and leave the cursor where it was in the line below. */

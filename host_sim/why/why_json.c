@@ -27,7 +27,7 @@ static json_t *data_of(const hal_can_frame_t *frame) {
     return json_string(text);
 }
 
-static json_t *evidence_of(const why_trip_t *trip, const why_names_t *names) {
+static json_t *evidence_json(const why_trip_t *trip, const why_names_t *names) {
     json_t *list = json_array();
     for (size_t i = 0u; i < trip->evidence_count; i++) {
         const why_evidence_t *evidence = &trip->evidence[i];
@@ -53,7 +53,7 @@ static json_t *trip_of(const why_trip_t *trip, const why_names_t *names) {
     json_put(object, "last_good_ms", time_or_null(trip->last_good_us));
     json_put(object, "limit", (trip->limit != WHY_NO_LIMIT) ? json_integer((json_int_t)trip->limit) : json_null());
     json_put(object, "unit", (trip->limit != WHY_NO_LIMIT) ? json_text(trip->unit) : json_null());
-    json_put(object, "evidence", evidence_of(trip, names));
+    json_put(object, "evidence", evidence_json(trip, names));
     json_put(object, "first_safe_ms", time_or_null(trip->first_safe_us));
     json_put(object, "confirmed_ms", time_or_null(trip->confirmed_us));
     json_put(object, "stopped_ms", time_or_null(trip->stopped_us));

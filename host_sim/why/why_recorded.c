@@ -11,7 +11,7 @@ static void before(why_trip_t *trip, uint64_t lasted_us) {
     trip->cause_us = (trip->t_us > lasted_us) ? trip->t_us - lasted_us : 0u;
 }
 
-static uint64_t limit_us(const why_trip_t *trip) {
+static uint64_t recorded_limit_us(const why_trip_t *trip) {
     return (trip->limit != WHY_NO_LIMIT) ? (uint64_t)trip->limit * US_PER_MS : 0u;
 }
 
@@ -42,13 +42,13 @@ static void explain_silent_command(const why_t *why, const agv_event_t *event, w
 }
 
 /** A deadline expires when the last good frame is older than its limit. */
-static void explain_silence(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
+static void recorded_silence(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
     const bool is_command = why_is_command(trip->message);
     trip->was_heard = is_seen(event, trip->message);
     if (!trip->was_heard && (trip->message == AGV_MSG_TURN_SIGNAL_COMMAND)) {
         trip->limit = why->config.ai_never_seen_timeout_ms;
     }
-    before(trip, limit_us(trip) + US_PER_MS);
+    before(trip, recorded_limit_us(trip) + US_PER_MS);
     if (trip->was_heard && is_command) {
         explain_silent_command(why, event, trip);
     } else if (trip->was_heard) {
@@ -60,7 +60,7 @@ static void explain_silence(const why_t *why, const agv_event_t *event, why_trip
     }
 }
 
-static void explain_value(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
+static void recorded_value(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
     for (uint32_t command = 0u; command < AGV_COMMAND_COUNT; command++) {
         if (is_seen(event, (agv_message_t)command) && !agv_value_is_valid(command, event->frames[command])) {
             trip->message = (agv_message_t)command;
@@ -70,14 +70,14 @@ static void explain_value(const why_t *why, const agv_event_t *event, why_trip_t
     why_value_limit(trip);
 }
 
-static void explain_vehicle(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
+static void recorded_vehicle(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
     const uint32_t flags = event->frames[AGV_MSG_VEHICLE_STATUS][6];
     if ((trip->reason == AGV_FAULT_SAFE_STATE_UNCONFIRMED) && ((flags & AGV_VCU_FLAG_AUTOPILOT) == 0u)) {
         trip->message = AGV_MSG_GEAR_STATUS;
         trip->id = why->ids.of[AGV_MSG_GEAR_STATUS];
         trip->limit = why->config.park_confirm_timeout_ms;
     }
-    before(trip, limit_us(trip));
+    before(trip, recorded_limit_us(trip));
     if (trip->reason == AGV_FAULT_MOVING_WHILE_SAFE) { /* slow readings in between prolong it */
         trip->cause_us = WHY_NEVER;
     }
@@ -88,14 +88,14 @@ static void explain(const why_t *why, const agv_event_t *event, why_trip_t *trip
     case WHY_SILENCE:
     case WHY_STUCK:
         trip->wrong_steps = message_has_to_increment(&why->config, trip->message);
-        explain_silence(why, event, trip);
+        recorded_silence(why, event, trip);
         break;
     case WHY_SCORE:
         trip->at_the_latest = true;
         before(trip, ((uint64_t)trip->limit - 1u) * cycle_us(trip));
         break;
     case WHY_VALUE:
-        explain_value(why, event, trip);
+        recorded_value(why, event, trip);
         break;
     case WHY_BUDGET:
     case WHY_MODE:
@@ -103,14 +103,14 @@ static void explain(const why_t *why, const agv_event_t *event, why_trip_t *trip
         trip->cause_us = (trip->reason != AGV_FAULT_MODE_FLAPPING) ? trip->cause_us : WHY_NEVER;
         break;
     case WHY_VEHICLE:
-        explain_vehicle(why, event, trip);
+        recorded_vehicle(why, event, trip);
         break;
     case WHY_INTRUSION:
         trip->id = (trip->reason == AGV_FAULT_STATUS_ID_IN_USE) ? why->config.status_frame_id : WHY_NO_ID;
         trip->cause_us = (trip->reason == AGV_FAULT_COMMAND_TOO_FAST) ? WHY_NEVER : trip->t_us;
         break;
     default:
-        before(trip, limit_us(trip));
+        before(trip, recorded_limit_us(trip));
         break;
     }
 }

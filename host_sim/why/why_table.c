@@ -6,7 +6,7 @@
 
 #define AGV_SETTING_NONE WHY_NO_SETTING
 
-static const why_row_t rows[AGV_FAULT_COUNT] = {
+static const why_row_t explained_rows[AGV_FAULT_COUNT] = {
 #define WHY(fault, kind_, message_, setting_, unit_, byte_, mask_)                                                     \
     [AGV_FAULT_##fault] = {.kind = WHY_##kind_,                                                                        \
                            .message = AGV_MSG_##message_,                                                              \
@@ -37,7 +37,7 @@ const char *why_kind_name(why_kind_t kind) {
 }
 
 const why_row_t *why_row(agv_fault_t fault) {
-    return &rows[fault];
+    return &explained_rows[fault];
 }
 
 agv_message_t why_compared_with(agv_fault_t fault) {

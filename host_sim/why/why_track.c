@@ -11,11 +11,11 @@ typedef struct {
     agv_fault_t fault;
     condition_t condition;
     bool judged; /**< counts in autopilot only */
-} row_t;
+} tracked_t;
 
 #define ALWAYS(fault) {AGV_FAULT_##fault, BIT, false}
 
-static const row_t rows[] = {
+static const tracked_t tracked[] = {
     ALWAYS(VCU_EPS_HARDWARE_FAULT),
     ALWAYS(VCU_EPS_CAN_BUS_FAULT),
     ALWAYS(S_DRIVER_ALARM),
@@ -37,7 +37,7 @@ static const row_t rows[] = {
     {AGV_FAULT_STEERING_ANGLE_INVALID, VALUE, true},
 };
 
-enum { ROWS = sizeof rows / sizeof rows[0] };
+enum { TRACKED_COUNT = sizeof tracked / sizeof tracked[0] };
 
 void why_track_start(why_t *why) {
     for (size_t i = 0u; i < (size_t)AGV_FAULT_COUNT; i++) {
@@ -47,9 +47,9 @@ void why_track_start(why_t *why) {
 }
 
 void why_track_engage(why_t *why) {
-    for (size_t i = 0u; i < (size_t)ROWS; i++) {
-        if (rows[i].judged) {
-            why->trackers[rows[i].fault].value = 0u;
+    for (size_t i = 0u; i < (size_t)TRACKED_COUNT; i++) {
+        if (tracked[i].judged) {
+            why->trackers[tracked[i].fault].value = 0u;
         }
     }
 }
@@ -84,7 +84,7 @@ void why_score(why_tracker_t *tracker, bool bad, uint32_t frames, uint64_t from_
     tracker->bad = bad;
 }
 
-static bool is_bad(const row_t *row, const why_row_t *what, const uint8_t *data) {
+static bool is_bad(const tracked_t *row, const why_row_t *what, const uint8_t *data) {
     switch (row->condition) {
     case BIT:
         return (data[what->byte] & what->mask) != 0u;
@@ -95,7 +95,7 @@ static bool is_bad(const row_t *row, const why_row_t *what, const uint8_t *data)
     }
 }
 
-static void follow(why_t *why, const row_t *row, agv_message_t message, const why_evidence_t *frame) {
+static void follow(why_t *why, const tracked_t *row, agv_message_t message, const why_evidence_t *frame) {
     const why_row_t *what = why_row(row->fault);
     why_tracker_t *tracker = &why->trackers[row->fault];
     if (what->message != message) {
@@ -125,8 +125,8 @@ void why_track_frame(why_t *why, agv_message_t message, const why_evidence_t *fr
         why_intruder_command(why, message, frame);
         return;
     }
-    for (size_t i = 0u; i < (size_t)ROWS; i++) {
-        follow(why, &rows[i], message, frame);
+    for (size_t i = 0u; i < (size_t)TRACKED_COUNT; i++) {
+        follow(why, &tracked[i], message, frame);
     }
 }
 

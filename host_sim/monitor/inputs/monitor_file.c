@@ -6,7 +6,7 @@
 #include "common/report.h"
 #include "text/units.h"
 
-enum { FRAMES_AT_ONCE = 4000, BACK_MS = 10 /* less is the order of two interfaces, as for replay */ };
+enum { RECORDS_AT_ONCE = 4000, BACK_MS = 10 /* less is the order of two interfaces, as for replay */ };
 
 static void note_back(monitor_file_t *file) {
     const uint64_t newest_us = file->first_us + file->next_us;
@@ -54,7 +54,7 @@ bool monitor_file_open(monitor_file_t *file, const char *path, const char *ai_in
 
 bool monitor_file_pass(monitor_file_t *file, monitor_t *monitor, uint64_t until_us) {
     int passed = 0;
-    while (file->has_next && (file->next_us <= until_us) && (passed < (int)FRAMES_AT_ONCE)) {
+    while (file->has_next && (file->next_us <= until_us) && (passed < (int)RECORDS_AT_ONCE)) {
         const bool is_ai = candump_is_from(&file->next, file->ai_interface);
         const hal_can_side_t side = is_ai ? HAL_CAN_AI : HAL_CAN_VEHICLE;
         file->ai_was_heard = file->ai_was_heard || is_ai;

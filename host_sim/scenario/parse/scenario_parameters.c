@@ -15,7 +15,7 @@ const yaml_word_t SCENARIO_FRAME_KINDS[] = {
     {"data", 0},        {"extended", HAL_CAN_EXTENDED}, {"remote", HAL_CAN_REMOTE},
     {"fd", HAL_CAN_FD}, {"error", HAL_CAN_ERROR},       {NULL, 0}};
 
-static const yaml_shape_t PAYLOAD = {.kind = YAML_KIND_BYTES, .highest = AGV_DLC, .may_be_open = true};
+static const yaml_shape_t OTHER_BYTES = {.kind = YAML_KIND_BYTES, .highest = AGV_DLC, .may_be_open = true};
 
 #define NUMBER(name_, low, high) {.name = (name_), .kind = YAML_KIND_NUMBER, .lowest = (low), .highest = (high)}
 #define TIME(name_, low, high)                                                                                         \
@@ -30,7 +30,7 @@ const yaml_key_t SCENARIO_PARAMETER_ROWS[SCENARIO_PARAMETERS] = {
     NUMBER("times", 0, COUNT_MAX),
     OTHER("kind", &SCENARIO_TEXT_SHAPE),
     TIME("every_ms", 1, SHORT_MAX_MS),
-    OTHER("bytes", &PAYLOAD),
+    OTHER("bytes", &OTHER_BYTES),
     OTHER("field", &SCENARIO_TEXT_SHAPE),
     {.name = "value", .kind = YAML_KIND_HEX, .highest = UINT32_MAX},
     WORD("gear", SCENARIO_GEARS),

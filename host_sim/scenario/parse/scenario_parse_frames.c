@@ -39,11 +39,11 @@ static bool read_frame_bytes(const yaml_reader_t *reader, const yaml_node_t *nod
     return yaml_reader_bytes(reader, node, "bytes", frame->value, frame->mask, &frame->length);
 }
 
-#define MEMBER(kind, key, ...) YAML_##kind(key, scenario_frame_t, __VA_ARGS__)
+#define FRAME_MEMBER(kind, key, ...) YAML_##kind(key, scenario_frame_t, __VA_ARGS__)
 /* What expected and forbidden frames have in common. */
 #define WHICH_FRAME(id_max)                                                                                            \
-    YAML_OPTIONAL(MEMBER(WORD, "from", from, SENDERS)), YAML_OPTIONAL(YAML_CALL("side", read_frame_side, &SIDE)),      \
-        YAML_OPTIONAL(MEMBER(ID, "id", id, id_max)),                                                                   \
+    YAML_OPTIONAL(FRAME_MEMBER(WORD, "from", from, SENDERS)),                                                          \
+        YAML_OPTIONAL(YAML_CALL("side", read_frame_side, &SIDE)), YAML_OPTIONAL(FRAME_MEMBER(ID, "id", id, id_max)),   \
         YAML_OPTIONAL(YAML_CALL("message", read_frame_message, &SCENARIO_MESSAGE_SHAPE)),                              \
         YAML_OPTIONAL(YAML_CALL("bytes", read_frame_bytes, &PAYLOAD))
 
@@ -66,11 +66,11 @@ static bool names_one_id(const yaml_reader_t *reader, const yaml_node_t *node, c
 static const yaml_key_t FRAME[] = {
     WHICH_FRAME(AGV_ID_MAX), /* the messages have 11 bits */
     SCENARIO_WHEN(scenario_frame_t, "at_ms", at_ms),
-    YAML_OPTIONAL(MEMBER(TIME, "first_since_ms", first_since_ms, 0, SCENARIO_DURATION_MAX_MS),
+    YAML_OPTIONAL(FRAME_MEMBER(TIME, "first_since_ms", first_since_ms, 0, SCENARIO_DURATION_MAX_MS),
                   YAML_GIVEN(scenario_frame_t, is_first)),
-    YAML_OPTIONAL(MEMBER(RANGE, "count", count, 0, SCENARIO_DURATION_MAX_MS)),
-    YAML_OPTIONAL(MEMBER(TIME, "every_ms", every_ms, 1, 60000)),
-    YAML_OPTIONAL(MEMBER(TIME, "jitter_ms", jitter_ms, 0, 60000)),
+    YAML_OPTIONAL(FRAME_MEMBER(RANGE, "count", count, 0, SCENARIO_DURATION_MAX_MS)),
+    YAML_OPTIONAL(FRAME_MEMBER(TIME, "every_ms", every_ms, 1, 60000)),
+    YAML_OPTIONAL(FRAME_MEMBER(TIME, "jitter_ms", jitter_ms, 0, 60000)),
 };
 const yaml_shape_t SCENARIO_FRAME_SHAPE = {
     YAML_MAP_SHAPE(FRAME), .rules = {SCENARIO_WHEN_RULES("at_ms"), {YAML_RULE_ONE_OF, "id", "message"}}};
@@ -96,11 +96,12 @@ bool scenario_parse_frame(const yaml_reader_t *reader, const yaml_node_t *node, 
 }
 
 /* An extended frame must not be, either: a gateway may not pass it. */
-static const yaml_key_t NEVER[] = {WHICH_FRAME(0x1FFFFFFF), SCENARIO_WHEN(scenario_frame_t, "at_ms", at_ms)};
-const yaml_shape_t SCENARIO_NEVER_SHAPE = {YAML_MAP_SHAPE(NEVER), .rules = {{YAML_RULE_NOT_BOTH, "at_ms", "after"},
-                                                                            {YAML_RULE_NEEDS, "after", "within"},
-                                                                            {YAML_RULE_NEEDS, "within", "after"},
-                                                                            {YAML_RULE_NOT_BOTH, "id", "message"}}};
+static const yaml_key_t NEVER_KEYS[] = {WHICH_FRAME(0x1FFFFFFF), SCENARIO_WHEN(scenario_frame_t, "at_ms", at_ms)};
+const yaml_shape_t SCENARIO_NEVER_SHAPE = {YAML_MAP_SHAPE(NEVER_KEYS),
+                                           .rules = {{YAML_RULE_NOT_BOTH, "at_ms", "after"},
+                                                     {YAML_RULE_NEEDS, "after", "within"},
+                                                     {YAML_RULE_NEEDS, "within", "after"},
+                                                     {YAML_RULE_NOT_BOTH, "id", "message"}}};
 
 bool scenario_parse_never(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     const scenario_when_t when = {.scenario = target, .what = "a forbidden frame", .key = "at_ms", .is_optional = true};
@@ -110,6 +111,6 @@ bool scenario_parse_never(const yaml_reader_t *reader, const yaml_node_t *node, 
         return false;
     }
     preset_frame(frame, node);
-    return yaml_reader_map(reader, node, when.what, NEVER, COUNT(NEVER), frame) && names_one_id(reader, node, frame) &&
-           scenario_parse_when(reader, node, &when, &frame->at_ms);
+    return yaml_reader_map(reader, node, when.what, NEVER_KEYS, COUNT(NEVER_KEYS), frame) &&
+           names_one_id(reader, node, frame) && scenario_parse_when(reader, node, &when, &frame->at_ms);
 }

@@ -6,10 +6,10 @@
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
-static const yaml_word_t NEVER_WORDS[] = {{"never", 0}, {NULL, 0}};
-static const yaml_shape_t NEVER = {.kind = YAML_KIND_WORD, .words = NEVER_WORDS};
+static const yaml_word_t NO_START_WORDS[] = {{"never", 0}, {NULL, 0}};
+static const yaml_shape_t NO_START = {.kind = YAML_KIND_WORD, .words = NO_START_WORDS};
 static const yaml_shape_t START = {
-    .kind = YAML_KIND_TIME, .unit = DURATION_MS, .highest = SCENARIO_DURATION_MAX_MS, .other = &NEVER};
+    .kind = YAML_KIND_TIME, .unit = DURATION_MS, .highest = SCENARIO_DURATION_MAX_MS, .other = &NO_START};
 static const yaml_shape_t ID_SET = {.kind = YAML_KIND_WORD, .words = SCENARIO_ID_SETS};
 
 static bool read_start(const yaml_reader_t *reader, const yaml_node_t *node, uint32_t *start_ms) {

@@ -11,7 +11,7 @@
 enum { GEARS_SIZE = 24, MOVES_MM_S = 100, STANDS_MM_S = 50, APART_MM_S = 500, MIDDLE_PARTS = 10, SPAN_MIN = 1000 };
 enum { SUPPLY_LOWEST = 60, SUPPLY_HIGHEST = 250, SUPPLY_SPREAD = 60 };
 enum { CENTRE_DDEG = 450, HALF_DDEG = 4500, JUMP_DDEG = 1000 };
-enum { FRAMES_PER_CHANGE = 100, ANGLE_CONTROL = AGV_EPS_MODE_ANGLE, MODE_SAMPLES_MIN = 10, SAMPLE_MS = 100 };
+enum { FRAMES_PER_CHANGE = 100, ANGLE_CONTROL = AGV_EPS_MODE_ANGLE, MODE_SAMPLES_MIN = 10, VALUE_SAMPLE_MS = 100 };
 
 static const double TOGETHER = 0.9;
 static const double PERCENT_PER_COUNT = 0.4;
@@ -174,7 +174,7 @@ static verdict_t judge_wheels(const suspect_t *suspect, criterion_t *criterion) 
 
 /** Share of the time in which the EPS is under angle control, in a mode of the vehicle. */
 static double angle_control(const compare_t *compare, bool is_engaged, uint64_t *samples) {
-    const uint64_t step_us = (uint64_t)SAMPLE_MS * US_PER_MS;
+    const uint64_t step_us = (uint64_t)VALUE_SAMPLE_MS * US_PER_MS;
     size_t at[2] = {0u, 0u};
     uint64_t controlled = 0u;
     *samples = 0u;
