@@ -42,7 +42,7 @@ static double cpu_ns(void) {
 
 static void count(void *ctx, const hal_can_frame_t *frame) {
     bench_t *bench = ctx;
-    bench->received += frame->length / 8u;
+    bench->received += frame->length / 8;
 }
 
 static void count_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
@@ -71,12 +71,12 @@ static void setup(bench_t *bench, unsigned nodes, bool with_hal, bool with_frame
 /* Seven frames every 10 ms: in the first millisecond four, in the sixth three. */
 static void send(bench_t *bench, uint64_t tick) {
     static const uint16_t IDS[7] = {0x363, 0x067, 0x167, 0x267, 0x050, 0x101, 0x0A3};
-    const unsigned phase = (unsigned)(tick % 10u);
-    const unsigned first = phase == 0 ? 0u : 4u;
-    const unsigned last = phase == 0 ? 4u : phase == 5 ? 7u : 0u;
+    const unsigned phase = (unsigned)(tick % 10);
+    const unsigned first = phase == 0 ? 0 : 4;
+    const unsigned last = phase == 0 ? 4 : phase == 5 ? 7 : 0;
     for (unsigned i = first; i < last; i++) {
         hal_can_frame_t frame = {.id = IDS[i], .length = 8, .data = {(uint8_t)tick}};
-        if (!sim_bus_send(&bench->bus, bench->nodes[i & 1u], &frame)) {
+        if (!sim_bus_send(&bench->bus, bench->nodes[i & 1], &frame)) {
             abort();
         }
     }
@@ -98,7 +98,7 @@ static double run_ns(bench_t *bench, uint64_t ticks) {
         if (bench->with_frames) {
             send(bench, tick);
         }
-        sim_bus_run_until(&bench->bus, (tick + 1u) * 1000u);
+        sim_bus_run_until(&bench->bus, (tick + 1) * 1000);
         if (bench->with_hal) {
             pump(bench);
         }
@@ -110,7 +110,7 @@ static double best_ns(bench_t *bench, uint64_t seconds, unsigned nodes, bool wit
     double best = 1e300;
     for (int pass = 0; pass < PASSES; pass++) {
         setup(bench, nodes, with_hal, with_frames);
-        const double ns = run_ns(bench, seconds * 1000u);
+        const double ns = run_ns(bench, seconds * 1000);
         best = ns < best ? ns : best;
     }
     return best / (double)seconds;

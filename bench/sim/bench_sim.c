@@ -35,16 +35,16 @@ static double drive(scenario_testbed_t *testbed, uint16_t topology, uint32_t dur
     agv_config_defaults(&scenario.config);
     vehicle_defaults(&scenario.vehicle);
     scenario.config.topology = topology;
-    scenario.vehicle.gateway = topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    scenario.vehicle.gateway = topology == AGV_TOPOLOGY_GATEWAY;
     if (!scenario_testbed_init(testbed, &scenario)) {
         return 0.0;
     }
     scenario_testbed_start(testbed);
     const double begin = seconds_now();
-    for (uint32_t t_ms = 0u; t_ms < duration_ms; t_ms++) {
+    for (uint32_t t_ms = 0; t_ms < duration_ms; t_ms++) {
         if (t_ms == SETTLED_MS) {
             act(testbed, t_ms,
-                (vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 300u});
+                (vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 300});
             act(testbed, t_ms, (vehicle_action_t){.what = VEHICLE_DO_ENGAGE});
         }
         scenario_testbed_tick(testbed, t_ms);
@@ -58,12 +58,12 @@ static double drive(scenario_testbed_t *testbed, uint16_t topology, uint32_t dur
     scenario_testbed_view(testbed, &seen);
     const agv_supervisor_t *supervisor = &scenario_testbed_session(testbed)->supervisor;
     const bool healthy = (agv_supervisor_state(supervisor) == AGV_STATE_ACTIVE) &&
-                         (agv_supervisor_counters(supervisor)->warnings == 0u) && (view.speed_mm_s > 0) &&
-                         (seen.lost_frames == 0u);
+                         (agv_supervisor_counters(supervisor)->warnings == 0) && (view.speed_mm_s > 0) &&
+                         (seen.lost_frames == 0);
     const double factor = ((double)duration_ms / MS_PER_S) / took;
     (void)printf("%-14s %8.0f times real time, %6.1f ns a tick, %" PRIu64 " frames, %s\n",
-                 (topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? "gateway" : "shared bus", factor,
-                 took * 1e9 / duration_ms, stats.frames, healthy ? "healthy" : "NOT HEALTHY");
+                 (topology == AGV_TOPOLOGY_GATEWAY) ? "gateway" : "shared bus", factor, took * 1e9 / duration_ms,
+                 stats.frames, healthy ? "healthy" : "NOT HEALTHY");
     return healthy ? factor : 0.0;
 }
 
@@ -77,11 +77,11 @@ static void ignore(void *ctx, vehicle_node_t from, hal_can_side_t side, const ha
 static void vehicle_alone(uint32_t duration_ms) {
     static vehicle_t vehicle;
     vehicle_config_t config;
-    uint64_t frames = 0u;
+    uint64_t frames = 0;
     vehicle_defaults(&config);
     vehicle_init(&vehicle, &config, ignore, &frames);
     const double begin = seconds_now();
-    for (uint32_t t_ms = 0u; t_ms < duration_ms; t_ms++) {
+    for (uint32_t t_ms = 0; t_ms < duration_ms; t_ms++) {
         vehicle_tick(&vehicle, t_ms);
     }
     const double took = seconds_now() - begin;

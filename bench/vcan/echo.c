@@ -46,7 +46,7 @@ static void answer(int fd, long late_ms) {
     if (late_ms > 0) {
         (void)nanosleep(&late, NULL);
     }
-    for (unsigned i = 0u; i < 3u; i++) {
+    for (unsigned i = 0; i < 3; i++) {
         if (write(fd, &SAFE[i], sizeof SAFE[i]) < 0) {
             perror("bench_vcan_echo");
         }

@@ -57,7 +57,7 @@ uint64_t player_now_ns(void) {
 
 static bool listen_to(int fd, const uint16_t *ids, size_t count) {
     struct can_filter filters[8];
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         filters[i] = (struct can_filter){.can_id = ids[i], .can_mask = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG};
     }
     return setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters, (socklen_t)(count * sizeof filters[0])) == 0;
@@ -84,7 +84,7 @@ static bool open_side(player_t *player, player_side_t side, const char *interfac
     player->send_fd[side] = open_socket(interface);
     player->listen_fd[side] = open_socket(interface);
     return (player->send_fd[side] >= 0) && (player->listen_fd[side] >= 0) &&
-           listen_to(player->send_fd[side], HEARD, 0u) && listen_to(player->listen_fd[side], HEARD, HEARD_COUNT);
+           listen_to(player->send_fd[side], HEARD, 0) && listen_to(player->listen_fd[side], HEARD, HEARD_COUNT);
 }
 
 bool player_open(player_t *player, const char *vehicle, const char *ai) {
@@ -120,28 +120,28 @@ static void fill(player_t *player, unsigned message, uint32_t count, uint8_t *da
         data[0] = GEAR_D;
         break;
     case THROTTLE_COMMAND:
-        data[0] = 10u;
+        data[0] = 10;
         break;
     case VEHICLE_STATUS:
         data[6] = (uint8_t)((on ? 0x80u : 0x40u) | (player->button ? 0x01u : 0x00u));
         data[7] = (uint8_t)count;
         break;
     case THROTTLE_STATUS:
-        data[0] = on ? 10u : 0u;
+        data[0] = on ? 10 : 0;
         break;
     case WHEEL_SPEED: /* up to 63 mm/s difference, which is the running number; 0 at standstill */
-        data[0] = on ? 200u : 0u;
-        data[4] = on ? (uint8_t)(140u + number) : 0u;
+        data[0] = on ? 200 : 0;
+        data[4] = on ? (uint8_t)(140 + number) : 0;
         break;
     case STEERING_STATUS:
         data[0] = (uint8_t)count;
-        data[1] = 100u;
+        data[1] = 100;
         data[2] = MEASURED_LOW;
         data[3] = MEASURED_HIGH;
         break;
     case EPS_STATUS:
-        data[3] = 1u; /* angle control */
-        data[7] = player->eps_fault ? EPS_FAULT : 0u;
+        data[3] = 1; /* angle control */
+        data[7] = player->eps_fault ? EPS_FAULT : 0;
         player->eps_fault = false;
         break;
     case STEERING_POSITION:
@@ -169,8 +169,8 @@ static void send_message(player_t *player, unsigned message) {
 }
 
 static void set_timer(const player_t *player) {
-    uint64_t next = (player->extra_ns != 0u) ? player->extra_due_ns : UINT64_MAX;
-    for (unsigned i = 0u; i < PLAYER_MESSAGES; i++) {
+    uint64_t next = (player->extra_ns != 0) ? player->extra_due_ns : UINT64_MAX;
+    for (unsigned i = 0; i < PLAYER_MESSAGES; i++) {
         next = (player->due_ns[i] < next) ? player->due_ns[i] : next;
     }
     const struct itimerspec when = {.it_value = {.tv_sec = player->sending ? (time_t)(next / NS_PER_S) : 0,
@@ -180,7 +180,7 @@ static void set_timer(const player_t *player) {
 
 void player_start(player_t *player) {
     const uint64_t now = player_now_ns();
-    for (unsigned i = 0u; i < PLAYER_MESSAGES; i++) {
+    for (unsigned i = 0; i < PLAYER_MESSAGES; i++) {
         player->due_ns[i] = now + ((uint64_t)MESSAGES[i].phase_us * NS_PER_US);
     }
     player->sending = true;
@@ -193,11 +193,10 @@ void player_stop(player_t *player) {
 }
 
 bool player_flood(player_t *player, uint32_t frames_a_second) {
-    player->extra_ns = (frames_a_second != 0u) ? NS_PER_S / frames_a_second : 0u;
+    player->extra_ns = (frames_a_second != 0) ? NS_PER_S / frames_a_second : 0;
     player->extra_due_ns = player_now_ns();
     set_timer(player);
-    return listen_to(player->listen_fd[PLAYER_VEHICLE], HEARD,
-                     (frames_a_second != 0u) ? HEARD_SAFE_COUNT : HEARD_COUNT);
+    return listen_to(player->listen_fd[PLAYER_VEHICLE], HEARD, (frames_a_second != 0) ? HEARD_SAFE_COUNT : HEARD_COUNT);
 }
 
 /**
@@ -206,16 +205,16 @@ bool player_flood(player_t *player, uint32_t frames_a_second) {
  */
 static void send_due(player_t *player) {
     const uint64_t now = player_now_ns();
-    for (unsigned i = 0u; i < PLAYER_MESSAGES; i++) {
+    for (unsigned i = 0; i < PLAYER_MESSAGES; i++) {
         const uint64_t cycle_ns = (uint64_t)MESSAGES[i].cycle_us * NS_PER_US;
         if (player->due_ns[i] <= now) {
             send_message(player, i);
-            player->due_ns[i] += ((now - player->due_ns[i]) / cycle_ns + 1u) * cycle_ns;
+            player->due_ns[i] += ((now - player->due_ns[i]) / cycle_ns + 1) * cycle_ns;
         }
     }
-    while ((player->extra_ns != 0u) && (player->extra_due_ns <= now)) {
+    while ((player->extra_ns != 0) && (player->extra_due_ns <= now)) {
         send_message(player, STATUSES + player->extra_next);
-        player->extra_next = (player->extra_next + 1u) % (PLAYER_MESSAGES - STATUSES);
+        player->extra_next = (player->extra_next + 1) % (PLAYER_MESSAGES - STATUSES);
         player->extra_due_ns += player->extra_ns;
     }
     set_timer(player);
@@ -228,7 +227,7 @@ void player_forget(player_t *player) {
 }
 
 static void hear_safe(player_t *player, player_safe_t which, uint64_t stamp_ns) {
-    if (player->safe_ns[which] == 0u) {
+    if (player->safe_ns[which] == 0) {
         player->safe_ns[which] = stamp_ns;
     }
 }
@@ -236,15 +235,15 @@ static void hear_safe(player_t *player, player_safe_t which, uint64_t stamp_ns) 
 static void pass(player_passing_t *passing, bool in, unsigned number, uint64_t stamp_ns) {
     uint64_t *in_ns = &passing->in_ns[number % PLAYER_PENDING];
     uint64_t *out_ns = &passing->out_ns[number % PLAYER_PENDING];
-    passing->lost += (in && (*in_ns != 0u)) ? 1u : 0u;
+    passing->lost += (in && (*in_ns != 0)) ? 1 : 0;
     *(in ? in_ns : out_ns) = stamp_ns;
-    if ((*in_ns != 0u) && (*out_ns != 0u)) {
+    if ((*in_ns != 0) && (*out_ns != 0)) {
         if (passing->passed < PLAYER_SAMPLES) {
             passing->took_ns[passing->passed] = *out_ns - *in_ns;
         }
         passing->passed++;
-        *in_ns = 0u;
-        *out_ns = 0u;
+        *in_ns = 0;
+        *out_ns = 0;
     }
 }
 
@@ -261,16 +260,16 @@ static void hear_steering(player_t *player, player_side_t side, const struct can
 
 static void hear(player_t *player, player_side_t side, const struct can_frame *frame, uint64_t stamp_ns) {
     const bool vehicle = side == PLAYER_VEHICLE;
-    if ((frame->can_id == 0x075) && vehicle && (frame->data[0] == 0u)) {
+    if ((frame->can_id == 0x075) && vehicle && (frame->data[0] == 0)) {
         hear_safe(player, PLAYER_SAFE_THROTTLE, stamp_ns);
     } else if ((frame->can_id == 0x168) && vehicle && (frame->data[0] == GEAR_P)) {
         hear_safe(player, PLAYER_SAFE_GEAR, stamp_ns);
-    } else if ((frame->can_id == 0x43F) && vehicle && ((frame->data[4] & AUTOPILOT_OFF) != 0u)) {
+    } else if ((frame->can_id == 0x43F) && vehicle && ((frame->data[4] & AUTOPILOT_OFF) != 0)) {
         hear_safe(player, PLAYER_SAFE_LIGHTS, stamp_ns);
     } else if ((frame->can_id == 0x167) && vehicle && (frame->data[7] == EPS_FAULT)) {
         player->fault_ns = stamp_ns;
-    } else if ((frame->can_id == 0x101) && (frame->data[0] != 0u)) {
-        pass(&player->status, vehicle, frame->data[4] - 140u, stamp_ns);
+    } else if ((frame->can_id == 0x101) && (frame->data[0] != 0)) {
+        pass(&player->status, vehicle, frame->data[4] - 140, stamp_ns);
     } else if (frame->can_id == 0x065) {
         hear_steering(player, side, frame, stamp_ns);
     }
@@ -303,14 +302,14 @@ bool player_step(player_t *player, int other_fd) {
     enum { TIMER = PLAYER_SIDES, OTHER, FILES };
     struct pollfd files[FILES] = {
         [TIMER] = {.fd = player->timer_fd, .events = POLLIN}, [OTHER] = {.fd = other_fd, .events = POLLIN}};
-    for (unsigned side = 0u; side < PLAYER_SIDES; side++) {
+    for (unsigned side = 0; side < PLAYER_SIDES; side++) {
         files[side] = (struct pollfd){.fd = player->listen_fd[side], .events = POLLIN};
     }
     (void)poll(files, FILES, STEP_MS);
     if (player->sending && (files[TIMER].revents != 0)) {
         send_due(player);
     }
-    for (unsigned side = 0u; side < PLAYER_SIDES; side++) {
+    for (unsigned side = 0; side < PLAYER_SIDES; side++) {
         while ((files[side].revents != 0) && read_frame(player, (player_side_t)side)) {
         }
     }

@@ -19,9 +19,9 @@ extern char **environ;
 bool subject_start(subject_t *subject) {
     posix_spawn_file_actions_t actions;
     int ends[2];
-    subject->length = 0u;
+    subject->length = 0;
     subject->state[0] = '\0';
-    subject->received = 0u;
+    subject->received = 0;
     if (pipe2(ends, O_CLOEXEC) != 0) {
         perror("pipe");
         return false;
@@ -57,8 +57,8 @@ static void take(subject_t *subject, char letter) {
     if (letter == '\n') {
         subject->line[subject->length] = '\0';
         take_line(subject);
-        subject->length = 0u;
-    } else if (subject->length < SUBJECT_LINE_SIZE - 1u) {
+        subject->length = 0;
+    } else if (subject->length < SUBJECT_LINE_SIZE - 1) {
         subject->line[subject->length] = letter;
         subject->length++;
     }
@@ -97,15 +97,15 @@ void subject_end(subject_t *subject) {
 
 uint64_t subject_cpu_ns(const subject_t *subject) {
     char path[64];
-    unsigned long user = 0u;
-    unsigned long system = 0u;
+    unsigned long user = 0;
+    unsigned long system = 0;
     (void)snprintf(path, sizeof path, "/proc/%d/stat", (int)subject->pid);
     FILE *file = fopen(path, "r");
     if (file != NULL) {
         /* the name in parentheses could contain spaces; those of the measured programs do not */
         if (fscanf(file, "%*d %*s %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu", &user, &system) != 2) {
-            user = 0u;
-            system = 0u;
+            user = 0;
+            system = 0;
         }
         (void)fclose(file);
     }

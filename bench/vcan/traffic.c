@@ -67,15 +67,15 @@ static bool never(const bench_t *bench) {
 }
 
 static bool is_safe(const bench_t *bench) {
-    uint64_t any = 0u;
-    for (unsigned i = 0u; i < PLAYER_SAFE_COUNT; i++) {
+    uint64_t any = 0;
+    for (unsigned i = 0; i < PLAYER_SAFE_COUNT; i++) {
         any |= bench->player.safe_ns[i];
     }
-    return any != 0u;
+    return any != 0;
 }
 
 static bool is_parked(const bench_t *bench) {
-    return bench->player.safe_ns[PLAYER_SAFE_GEAR] != 0u;
+    return bench->player.safe_ns[PLAYER_SAFE_GEAR] != 0;
 }
 
 static bool is_standby(const bench_t *bench) {
@@ -111,7 +111,7 @@ static void play(bench_t *bench, uint32_t ms) {
 /** Wait until a subject without states answers a fault. If it never does, the trials count it as missed. */
 static void wake(bench_t *bench) {
     player_start(&bench->player);
-    for (unsigned i = 0u; (i < WAKE_TRIES) && !is_safe(bench); i++) {
+    for (unsigned i = 0; (i < WAKE_TRIES) && !is_safe(bench); i++) {
         bench->player.eps_fault = true;
         (void)play_until(bench, is_safe, WAKE_MS);
     }
@@ -179,7 +179,7 @@ static void halt(bench_t *bench) {
         return;
     }
     if (bench->keep) {
-        play(bench, 2u * STEERING_DEADLINE_NS / NS_PER_MS); /* it trips */
+        play(bench, 2 * STEERING_DEADLINE_NS / NS_PER_MS); /* it trips */
         subject_signal(&bench->subject, SIGSTOP);
     } else {
         subject_end(&bench->subject);
@@ -193,8 +193,8 @@ typedef enum { TRIAL_MEASURED, TRIAL_TOO_EARLY, TRIAL_MISSED } trial_t;
 static trial_t judge(const bench_t *bench, uint64_t from_ns) {
     const uint64_t *safe = bench->player.safe_ns;
     uint64_t first = safe[PLAYER_SAFE_GEAR];
-    for (unsigned i = 0u; i < PLAYER_SAFE_COUNT; i++) {
-        first = ((safe[i] != 0u) && (safe[i] < first)) ? safe[i] : first;
+    for (unsigned i = 0; i < PLAYER_SAFE_COUNT; i++) {
+        first = ((safe[i] != 0) && (safe[i] < first)) ? safe[i] : first;
     }
     if (first < from_ns) {
         return TRIAL_TOO_EARLY;
@@ -218,7 +218,7 @@ static trial_t trial(bench_t *bench, fault_t fault) {
 }
 
 static void run_trials(bench_t *bench, fault_t fault, uint32_t count) {
-    uint32_t results[TRIAL_MISSED + 1] = {0u};
+    uint32_t results[TRIAL_MISSED + 1] = {0};
     while (results[TRIAL_MEASURED] + results[TRIAL_MISSED] < count) {
         get_ready(bench);
         results[trial(bench, fault)]++;
@@ -230,7 +230,7 @@ static void run_trials(bench_t *bench, fault_t fault, uint32_t count) {
 }
 
 static void print_passed(const char *name, const player_passing_t *passing) {
-    for (uint32_t i = 0u; (i < passing->passed) && (i < PLAYER_SAMPLES); i++) {
+    for (uint32_t i = 0; (i < passing->passed) && (i < PLAYER_SAMPLES); i++) {
         (void)printf("%s %llu\n", name, (unsigned long long)passing->took_ns[i]);
     }
 }
@@ -269,7 +269,7 @@ static uint64_t ask_received(bench_t *bench) {
  */
 static uint64_t lost_until_now(bench_t *bench) {
     uint64_t received = ask_received(bench);
-    for (unsigned i = 0u; bench->keep && (i < DRAIN_TRIES); i++) {
+    for (unsigned i = 0; bench->keep && (i < DRAIN_TRIES); i++) {
         const uint64_t before = received;
         play(bench, DRAIN_MS);
         received = ask_received(bench);
@@ -286,7 +286,7 @@ static uint64_t lost_until_now(bench_t *bench) {
  */
 static uint64_t lost_before(bench_t *bench) {
     const bool kept = bench->keep && (bench->subject.pid != 0);
-    return kept ? lost_until_now(bench) : 0u;
+    return kept ? lost_until_now(bench) : 0;
 }
 
 static void run_flood(bench_t *bench, uint32_t rate, uint32_t ms) {
@@ -296,13 +296,13 @@ static void run_flood(bench_t *bench, uint32_t rate, uint32_t ms) {
     const uint64_t sent = bench->player.sent;
     const uint64_t cpu_ns = subject_cpu_ns(&bench->subject);
     const uint64_t start_ns = player_now_ns();
-    (void)player_flood(&bench->player, (rate > REGULAR_FRAMES_A_SECOND) ? rate - REGULAR_FRAMES_A_SECOND : 0u);
+    (void)player_flood(&bench->player, (rate > REGULAR_FRAMES_A_SECOND) ? rate - REGULAR_FRAMES_A_SECOND : 0);
     play(bench, ms);
     const uint64_t took_ns = player_now_ns() - start_ns;
     const uint64_t used_ns = subject_cpu_ns(&bench->subject) - cpu_ns;
     const uint64_t count = bench->player.sent - sent;
     const bool tripped = is_safe(bench);
-    (void)player_flood(&bench->player, 0u);
+    (void)player_flood(&bench->player, 0);
     player_stop(&bench->player);
     play(bench, DRAIN_MS);
     const uint64_t lost = lost_until_now(bench);
@@ -312,8 +312,8 @@ static void run_flood(bench_t *bench, uint32_t rate, uint32_t ms) {
 }
 
 static void obey(bench_t *bench, const char *line) {
-    unsigned count = 0u;
-    unsigned ms = 0u;
+    unsigned count = 0;
+    unsigned ms = 0;
     if ((bench->subject.pid != 0) && bench->keep) {
         subject_signal(&bench->subject, SIGCONT);
     }
@@ -334,7 +334,7 @@ static void obey(bench_t *bench, const char *line) {
 }
 
 static char **take_options(bench_t *bench, const char **ai, char **argument) {
-    for (; (*argument != NULL) && (strncmp(*argument, "--", 2u) == 0); argument++) {
+    for (; (*argument != NULL) && (strncmp(*argument, "--", 2) == 0); argument++) {
         if ((strcmp(*argument, "--ai") == 0) && (argument[1] != NULL)) {
             argument++;
             *ai = *argument;
@@ -362,7 +362,7 @@ int main(int argc, char **argv) {
         return 2;
     }
     bench.subject.command = rest + 1;
-    srand(1u);
+    srand(1);
     while (fgets(line, sizeof line, stdin) != NULL) {
         obey(&bench, line);
     }

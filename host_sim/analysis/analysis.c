@@ -32,7 +32,7 @@ struct analysis {
 };
 
 bool analysis_paths_any(const analysis_paths_t *files) {
-    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
+    for (size_t i = 0; i < ANALYSIS_FILES; i++) {
         if (files->paths[i] != NULL) {
             return true;
         }
@@ -41,7 +41,7 @@ bool analysis_paths_any(const analysis_paths_t *files) {
 }
 
 bool analysis_paths_use_stdout(const analysis_paths_t *files) {
-    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
+    for (size_t i = 0; i < ANALYSIS_FILES; i++) {
         if (output_is_stdout(files->paths[i])) {
             return true;
         }
@@ -69,7 +69,7 @@ static bool make_parts(analysis_t *analysis) {
 }
 
 analysis_t *analysis_new(const analysis_request_t *request) {
-    analysis_t *analysis = calloc(1u, sizeof *analysis);
+    analysis_t *analysis = calloc(1, sizeof *analysis);
     bool good = analysis != NULL;
     if (good) {
         analysis->request = *request;
@@ -91,7 +91,7 @@ analysis_t *analysis_new(const analysis_request_t *request) {
 }
 
 bool analysis_open(analysis_t *analysis) {
-    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
+    for (size_t i = 0; i < ANALYSIS_FILES; i++) {
         const char *path = analysis->request.files.paths[i];
         if ((path != NULL) && !output_open(&analysis->files[i], path)) {
             return false;
@@ -105,7 +105,7 @@ bool analysis_open(analysis_t *analysis) {
 
 void analysis_name_side(analysis_t *analysis, hal_can_side_t side, const char *name, size_t length) {
     if (analysis->names[side][0] == '\0') {
-        const size_t count = (length < (size_t)NAME_SIZE) ? length : (size_t)NAME_SIZE - 1u;
+        const size_t count = (length < NAME_SIZE) ? length : (size_t)NAME_SIZE - 1;
         memcpy(analysis->names[side], name, count);
     }
 }
@@ -142,8 +142,7 @@ void analysis_sent(analysis_t *analysis, hal_can_side_t side, const hal_can_fram
 void analysis_event(void *ctx, const session_event_t *event) {
     analysis_t *analysis = ctx;
     why_event(analysis->why, event);
-    const bool starts =
-        !event->is_led && (event->recorded.kind == (uint8_t)AGV_EVENT_STATE) && (event->recorded.a == 0u);
+    const bool starts = !event->is_led && (event->recorded.kind == AGV_EVENT_STATE) && (event->recorded.a == 0);
     if (starts && (analysis->traffic != NULL)) {
         traffic_start(analysis->traffic, event->t_ms * US_PER_MS);
     }
@@ -162,7 +161,7 @@ static const char *name_of(const analysis_t *analysis, int side) {
 /** The object of --why. @param messages the array of survey; the reference is taken */
 static json_t *make_why(const analysis_t *analysis, json_t *messages) {
     why_names_t names = {.log = analysis->request.log, .goes_back = analysis->goes_back, .messages = messages};
-    for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
+    for (int side = 0; side < HAL_CAN_SIDES; side++) {
         names.interfaces[side] = name_of(analysis, side);
     }
     return why_json(analysis->why, &names);
@@ -177,7 +176,7 @@ static void write_report(analysis_t *analysis, const json_t *messages) {
                           .messages = messages,
                           .remarks = analysis->remarks,
                           .is_partial = analysis->is_partial};
-    for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
+    for (int side = 0; side < HAL_CAN_SIDES; side++) {
         page.interfaces[side] = name_of(analysis, side);
     }
     report_page_write(&analysis->files[ANALYSIS_REPORT], &page, analysis->why, analysis->series);
@@ -235,7 +234,7 @@ const why_t *analysis_why(const analysis_t *analysis) {
 
 bool analysis_works(const analysis_t *analysis) {
     bool good = true;
-    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
+    for (size_t i = 0; i < ANALYSIS_FILES; i++) {
         good = good && (analysis->files[i].error == 0);
     }
     return good;
@@ -245,7 +244,7 @@ void analysis_free(analysis_t *analysis) {
     if (analysis == NULL) {
         return;
     }
-    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
+    for (size_t i = 0; i < ANALYSIS_FILES; i++) {
         output_discard(&analysis->files[i]);
     }
     why_free(analysis->why);

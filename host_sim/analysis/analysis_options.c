@@ -14,7 +14,7 @@ options_result_t analysis_options_parse(const analysis_command_t *command, int a
     option_t config_rows[CONFIG_OPTIONS];
     option_t analysis_rows[ANALYSIS_OPTIONS];
     config_options_init(config, config_rows);
-    option_t *shadow = &config_rows[CONFIG_OPTIONS - 1u];
+    option_t *shadow = &config_rows[CONFIG_OPTIONS - 1];
     shadow->help = (command->shadow_help != NULL) ? command->shadow_help : shadow->help;
     analysis_options_init(analysis, analysis_rows);
     const option_group_t groups[] = {
@@ -29,18 +29,18 @@ options_result_t analysis_options_parse(const analysis_command_t *command, int a
         .group_count = sizeof groups / sizeof groups[0],
         .examples = command->examples,
         .example_count = command->example_count,
-        .operands_min = 1u,
-        .operands_max = 1u,
+        .operands_min = 1,
+        .operands_max = 1,
         .operand = command->operand,
     };
-    size_t operands = 0u;
+    size_t operands = 0;
     return options_parse(&syntax, argc, argv, &operands);
 }
 
 void analysis_options_roles(const analysis_paths_t *options, output_role_t roles[ANALYSIS_FILES]) {
     static const char *const names[ANALYSIS_FILES] = {
         [ANALYSIS_WHY] = "--why", [ANALYSIS_REPORT] = "--report", [ANALYSIS_TRACE] = "--trace"};
-    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
+    for (size_t i = 0; i < ANALYSIS_FILES; i++) {
         roles[i] = (output_role_t){.role = names[i], .path = options->paths[i], .is_written = true};
     }
 }

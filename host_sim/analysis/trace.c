@@ -25,7 +25,7 @@ static void put(trace_t *trace, const char *format, ...) {
     const int length = vsnprintf(line, sizeof line, format, arguments);
     va_end(arguments);
     if ((length > 0) && (length < (int)sizeof line)) {
-        (void)output_write(trace->output, trace->has_events ? ",\n" : "\n", trace->has_events ? 2u : 1u);
+        (void)output_write(trace->output, trace->has_events ? ",\n" : "\n", trace->has_events ? 2 : 1);
         (void)output_write(trace->output, line, (size_t)length);
         trace->has_events = true;
     }
@@ -46,14 +46,14 @@ void trace_begin(trace_t *trace, output_t *output, const agv_config_t *config) {
     static const char head[] = "{\"displayTimeUnit\":\"ms\",\"traceEvents\":[";
     *trace = (trace_t){.output = output, .status_frame_id = config->status_frame_id};
     agv_config_ids(config, &trace->ids);
-    (void)output_write(output, head, sizeof head - 1u);
+    (void)output_write(output, head, sizeof head - 1);
     name_process(trace, SUPERVISOR, "supervisor");
     name_row(trace, SUPERVISOR, STATE_ROW, "state");
     name_row(trace, SUPERVISOR, OUTPUT_ROW, "safety output");
     name_process(trace, RECEIVED, "received");
     name_process(trace, SENT, "sent by the supervisor");
-    for (int process = RECEIVED; process <= (int)SENT; process++) {
-        for (uint32_t m = 0u; m < (uint32_t)SIGNALS_MESSAGES; m++) {
+    for (int process = RECEIVED; process <= SENT; process++) {
+        for (uint32_t m = 0; m < SIGNALS_MESSAGES; m++) {
             name_row(trace, process, (int)m + 1, signals_message_name(m));
         }
         name_row(trace, process, OTHER_ROW, "other identifiers");
@@ -62,19 +62,19 @@ void trace_begin(trace_t *trace, output_t *output, const agv_config_t *config) {
 
 static uint32_t message_of(const trace_t *trace, const hal_can_frame_t *frame) {
     const uint32_t message = agv_ids_find(&trace->ids, frame->id);
-    const bool is_status = (trace->status_frame_id != 0u) && (frame->id == trace->status_frame_id);
-    return (message == (uint32_t)AGV_MSG_NONE) && is_status ? SIGNALS_STATUS_FRAME : message;
+    const bool is_status = (trace->status_frame_id != 0) && (frame->id == trace->status_frame_id);
+    return (message == AGV_MSG_NONE) && is_status ? SIGNALS_STATUS_FRAME : message;
 }
 
 void trace_frame(trace_t *trace, hal_can_side_t side, const hal_can_frame_t *frame, bool sent, uint64_t t_us) {
     char data[DATA_SIZE] = "";
     char signals[SIGNALS_TEXT_SIZE] = "";
     const uint32_t message = message_of(trace, frame);
-    const bool whole = (frame->flags == 0u) && (frame->length == AGV_DLC) &&
-                       ((message != (uint32_t)AGV_MSG_NONE) || (frame->id == trace->status_frame_id));
+    const bool whole = (frame->flags == 0) && (frame->length == AGV_DLC) &&
+                       ((message != AGV_MSG_NONE) || (frame->id == trace->status_frame_id));
     const bool known = whole && (signals_message_name(message) != NULL);
-    for (size_t i = 0u; (i < frame->length) && (i < sizeof frame->data); i++) {
-        (void)snprintf(&data[2u * i], 3u, "%02X", frame->data[i]);
+    for (size_t i = 0; (i < frame->length) && (i < sizeof frame->data); i++) {
+        (void)snprintf(&data[2 * i], 3, "%02X", frame->data[i]);
     }
     if (known) {
         (void)signals_print(signals, sizeof signals, message, frame->data);
@@ -122,8 +122,8 @@ static void put_fault(trace_t *trace, uint32_t fault, bool begins, uint64_t t_us
 }
 
 static void on_fault(trace_t *trace, const agv_event_t *event, uint64_t t_us) {
-    const bool active = event->c != 0u;
-    if ((event->a < (uint8_t)AGV_FAULT_COUNT) && (active != (trace->active[event->a] != 0u))) {
+    const bool active = event->c != 0;
+    if ((event->a < AGV_FAULT_COUNT) && (active != (trace->active[event->a] != 0))) {
         trace->active[event->a] = active ? 1u : 0u;
         put_fault(trace, event->a, active, t_us);
     }
@@ -144,7 +144,7 @@ void trace_event(trace_t *trace, const session_event_t *event) {
         on_fault(trace, &event->recorded, t_us);
         break;
     case AGV_EVENT_OUTPUT:
-        on_output(trace, event->recorded.a != 0u, t_us);
+        on_output(trace, event->recorded.a != 0, t_us);
         break;
     default:
         break;
@@ -156,10 +156,10 @@ void trace_end(trace_t *trace, uint64_t t_us) {
         put_bar(trace, STATE_ROW, trace->state, trace->state_since_us, t_us);
     }
     on_output(trace, false, t_us);
-    for (uint32_t fault = 0u; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
-        if (trace->active[fault] != 0u) {
+    for (uint32_t fault = 0; fault < AGV_FAULT_COUNT; fault++) {
+        if (trace->active[fault] != 0) {
             put_fault(trace, fault, false, t_us);
         }
     }
-    (void)output_write(trace->output, "\n]}\n", 4u);
+    (void)output_write(trace->output, "\n]}\n", 4);
 }

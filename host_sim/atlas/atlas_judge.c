@@ -21,8 +21,8 @@ const char *atlas_weakness_name(atlas_weakness_t weakness) {
 
 /** It ends in the safe state, or has never left INIT, in which the output is open and the same commands are sent. */
 static bool ends_safe(const atlas_outcome_t *outcome) {
-    return (outcome->state == (int)AGV_STATE_TRIPPED) || (outcome->state == (int)AGV_STATE_SAFE) ||
-           ((outcome->state == (int)AGV_STATE_INIT) && (outcome->open_us == 0));
+    return (outcome->state == AGV_STATE_TRIPPED) || (outcome->state == AGV_STATE_SAFE) ||
+           ((outcome->state == AGV_STATE_INIT) && (outcome->open_us == 0));
 }
 
 /** Later than in the half in which it comes last. */
@@ -34,7 +34,7 @@ static bool is_late(int32_t pair_us, int32_t first_us, int32_t second_us, int32_
 atlas_weakness_t atlas_judge(const atlas_case_t *of, const atlas_outcome_t *pair, const atlas_outcome_t *first,
                              const atlas_outcome_t *second) {
     const int32_t frame_us = atlas_case_is_silent_twice(of) ? SILENT_TOLERANCE_US : FRAME_TOLERANCE_US;
-    const bool over_in_init = (of->state == ATLAS_INIT) && (pair->state == (int)AGV_STATE_STANDBY);
+    const bool over_in_init = (of->state == ATLAS_INIT) && (pair->state == AGV_STATE_STANDBY);
 
     if (!pair->ready) {
         return ATLAS_NOT_READY;
@@ -67,7 +67,7 @@ const char *atlas_known_reason(const atlas_case_t *of, atlas_weakness_t weakness
         {AGV_FAULT_MODE_FLAPPING, AGV_FAULT_AUTOPILOT_OFF_IGNORED, ATLAS_LATE_FRAME,
          "the second fault hides the changes of the mode, and the last engagement has its grace time"},
     };
-    for (size_t i = 0u; i < sizeof known / sizeof known[0]; i++) {
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
         if ((of->first->fault == known[i].first) && (of->second->fault == known[i].second) &&
             (weakness == known[i].weakness)) {
             return known[i].reason;

@@ -25,7 +25,7 @@ static int32_t after(const atlas_play_t *play, uint64_t t_us) {
 static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
     atlas_play_t *play = ctx;
     const bool own = (from == SCENARIO_FROM_SUPERVISOR) && (side == HAL_CAN_VEHICLE);
-    const bool commands_safe = play->tripped || (play->outcome.state == (int)AGV_STATE_INIT);
+    const bool commands_safe = play->tripped || (play->outcome.state == AGV_STATE_INIT);
 
     if (own && commands_safe && (t_us >= play->first_us) && (play->outcome.safe_us == ATLAS_NEVER) &&
         campaign_is_safe_command(scenario_testbed_message(&play->testbed, frame->id), frame)) {
@@ -37,11 +37,11 @@ static void on_event(void *ctx, const session_event_t *event) {
     atlas_play_t *play = ctx;
     const agv_event_t *recorded = &event->recorded;
 
-    if (event->is_led || (recorded->kind != (uint8_t)AGV_EVENT_STATE)) {
+    if (event->is_led || (recorded->kind != AGV_EVENT_STATE)) {
         return;
     }
     play->outcome.state = recorded->b;
-    if ((recorded->b == (uint8_t)AGV_STATE_TRIPPED) && !play->tripped) {
+    if ((recorded->b == AGV_STATE_TRIPPED) && !play->tripped) {
         play->tripped = true;
         play->outcome.reason = recorded->c;
     }
@@ -52,7 +52,7 @@ static bool is_ready(const atlas_play_t *play) {
         [ATLAS_INIT] = AGV_STATE_INIT,       [ATLAS_STANDBY] = AGV_STATE_STANDBY, [ATLAS_ACTIVE] = AGV_STATE_ACTIVE,
         [ATLAS_TRIPPED] = AGV_STATE_TRIPPED, [ATLAS_SAFE] = AGV_STATE_SAFE,
     };
-    const bool by_case = !play->tripped || (play->outcome.reason == (int)AGV_FAULT_STEERING_COMMAND_TIMEOUT);
+    const bool by_case = !play->tripped || (play->outcome.reason == AGV_FAULT_STEERING_COMMAND_TIMEOUT);
     return by_case && (play->outcome.state == states[play->pair->state]);
 }
 
@@ -85,10 +85,10 @@ static void before_step(void *ctx, uint64_t t_ms, const scenario_step_t *step) {
 static bool after_tick(void *ctx, uint64_t t_ms) {
     atlas_play_t *play = ctx;
     const uint64_t first_ms = play->first_us / US_PER_MS;
-    const bool starts = (play->pair->first != NULL) && ((play->pair->first->flags & CAMPAIGN_START) != 0u);
+    const bool starts = (play->pair->first != NULL) && ((play->pair->first->flags & CAMPAIGN_START) != 0);
 
     hazard_tick(&play->hazard, t_ms);
-    if (t_ms + 1u == first_ms) {
+    if (t_ms + 1 == first_ms) {
         play->outcome.ready = starts || is_ready(play);
         play->outcome.reason = starts ? play->outcome.reason : -1;
     }

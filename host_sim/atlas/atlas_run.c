@@ -91,9 +91,9 @@ static void write_case(atlas_t *atlas, uint32_t number, const atlas_case_t *pair
 
 static void show_weak(atlas_t *atlas, uint32_t number, const atlas_case_t *pair, atlas_weakness_t weakness) {
     const char *reason = atlas_known_reason(pair, weakness);
-    atlas->known += (reason != NULL) ? 1u : 0u;
-    atlas->weak += (reason != NULL) ? 0u : 1u;
-    if (atlas->weak + atlas->known <= (uint32_t)SHOWN_MAX) {
+    atlas->known += (reason != NULL) ? 1 : 0;
+    atlas->weak += (reason != NULL) ? 0 : 1;
+    if (atlas->weak + atlas->known <= SHOWN_MAX) {
         (void)fprintf(output_is_stdout(atlas->request->results) ? stderr : stdout,
                       "%s  case %" PRIu32 ": %s, %s, %s, after %" PRIu32 " ms %s%s%s\n", atlas_weakness_name(weakness),
                       number, pair->gateway ? "gateway" : "shared", atlas_state_name(pair->state),
@@ -124,12 +124,12 @@ static bool run_one(atlas_t *atlas, uint32_t number, const atlas_case_t *pair) {
 static bool run_all(atlas_t *atlas) {
     const atlas_request_t *request = atlas->request;
     const uint32_t count = atlas_case_count();
-    uint32_t met = 0u;
+    uint32_t met = 0;
     progress_t progress;
     bool good = true;
 
     progress_begin(&progress, count);
-    for (uint32_t number = 0u; good && (number < count); number++) {
+    for (uint32_t number = 0; good && (number < count); number++) {
         atlas_case_t pair;
         if (!takes_part(request, number, &pair)) {
             continue;
@@ -140,7 +140,7 @@ static bool run_all(atlas_t *atlas) {
         }
         good = run_one(atlas, number, &pair) && (atlas->results.error == 0);
         progress_show(&progress, number, "cases");
-        if (((atlas->cases % (uint32_t)LOOK_FOR_SIGNALS_EVERY) == 0u) && interrupt_pending()) {
+        if (((atlas->cases % LOOK_FOR_SIGNALS_EVERY) == 0) && interrupt_pending()) {
             good = false;
         }
     }
@@ -163,14 +163,14 @@ static status_t run_shard(atlas_t *atlas) {
                   "%" PRIu32 " pairs, %" PRIu32 " weaker than their worse baseline, %" PRIu32
                   " more for a known reason\n",
                   atlas->cases, atlas->weak, atlas->known);
-    return (atlas->weak == 0u) ? STATUS_OK : STATUS_UNMET;
+    return (atlas->weak == 0) ? STATUS_OK : STATUS_UNMET;
 }
 
 static status_t show_one(uint32_t number) {
     static text_t text;
     atlas_case_t pair;
     if (!atlas_case_get(number, &pair)) {
-        uint32_t next = number + 1u;
+        uint32_t next = number + 1;
         while ((next < atlas_case_count()) && !atlas_case_get(next, &pair)) {
             next++;
         }
@@ -189,7 +189,7 @@ status_t atlas_run(const atlas_request_t *request) {
     if (request->shows_one) {
         return show_one(request->one);
     }
-    atlas_t *atlas = calloc(1u, sizeof *atlas);
+    atlas_t *atlas = calloc(1, sizeof *atlas);
     if (atlas == NULL) {
         (void)report("out of memory");
         return STATUS_UNUSABLE;

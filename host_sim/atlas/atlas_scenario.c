@@ -17,11 +17,8 @@ enum {
     HEX = 16
 };
 
-static const uint32_t FIRST_MS[ATLAS_STATES] = {[ATLAS_INIT] = 200u,
-                                                [ATLAS_STANDBY] = 3000u,
-                                                [ATLAS_ACTIVE] = 3000u,
-                                                [ATLAS_TRIPPED] = 3400u,
-                                                [ATLAS_SAFE] = 8000u};
+static const uint32_t FIRST_MS[ATLAS_STATES] = {
+    [ATLAS_INIT] = 200, [ATLAS_STANDBY] = 3000, [ATLAS_ACTIVE] = 3000, [ATLAS_TRIPPED] = 3400, [ATLAS_SAFE] = 8000};
 
 uint32_t atlas_first_ms(atlas_state_t state) {
     return FIRST_MS[state];
@@ -29,14 +26,14 @@ uint32_t atlas_first_ms(atlas_state_t state) {
 
 /** The steps of both faults, in the order of time. */
 typedef struct {
-    campaign_step_t steps[2u * CAMPAIGN_STEPS_MAX];
+    campaign_step_t steps[2 * CAMPAIGN_STEPS_MAX];
     size_t count;
 } steps_t;
 
 /** "vcu: set, field: alarms, value: 10h": where the value begins, in a field whose bits are alarms; NULL: no such step. */
 static char *alarm_bits(char *words) {
     static const char *const fields[] = {"vcu: set, field: alarms, value: ", "eps: set, field: faults, value: "};
-    for (size_t i = 0u; i < sizeof fields / sizeof fields[0]; i++) {
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
         if (strncmp(words, fields[i], strlen(fields[i])) == 0) {
             return words + strlen(fields[i]);
         }
@@ -47,7 +44,7 @@ static char *alarm_bits(char *words) {
 /** Alarms of an earlier step stay set. */
 static void keep_alarms(steps_t *all, campaign_step_t *step) {
     char *bits = alarm_bits(step->words);
-    for (size_t i = 0u; (bits != NULL) && (i < all->count); i++) {
+    for (size_t i = 0; (bits != NULL) && (i < all->count); i++) {
         const char *earlier = alarm_bits(all->steps[i].words);
         if ((earlier != NULL) && (strncmp(step->words, all->steps[i].words, (size_t)(bits - step->words)) == 0)) {
             (void)snprintf(bits, CAMPAIGN_WORDS_SIZE - (size_t)(bits - step->words), "%02lXh",
@@ -58,8 +55,8 @@ static void keep_alarms(steps_t *all, campaign_step_t *step) {
 
 static void add_sorted(steps_t *all, const campaign_step_t *step) {
     size_t at = all->count;
-    while ((at > 0u) && (all->steps[at - 1u].at_ms > step->at_ms)) {
-        all->steps[at] = all->steps[at - 1u];
+    while ((at > 0) && (all->steps[at - 1].at_ms > step->at_ms)) {
+        all->steps[at] = all->steps[at - 1];
         at--;
     }
     all->steps[at] = *step;
@@ -67,11 +64,11 @@ static void add_sorted(steps_t *all, const campaign_step_t *step) {
 }
 
 static void add_row(steps_t *all, const campaign_row_t *row, uint32_t from_ms, bool gateway) {
-    const campaign_values_t values = {.number = (row->lowest + row->highest) / 2u, .gateway = gateway};
+    const campaign_values_t values = {.number = (row->lowest + row->highest) / 2, .gateway = gateway};
     campaign_step_t steps[CAMPAIGN_STEPS_MAX];
-    const size_t count = ((row->flags & CAMPAIGN_START) != 0u) ? 0u : campaign_steps(row, 0u, from_ms, &values, steps);
+    const size_t count = ((row->flags & CAMPAIGN_START) != 0) ? 0 : campaign_steps(row, 0, from_ms, &values, steps);
 
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         keep_alarms(all, &steps[i]);
         add_sorted(all, &steps[i]);
     }
@@ -83,10 +80,10 @@ static void add_top(text_t *text, const atlas_case_t *pair) {
                                 (pair->second != NULL) ? pair->second->top : ""};
     static const char board[] = "board: [";
     const bool boards =
-        (strncmp(tops[0], board, sizeof board - 1u) == 0) && (strncmp(tops[1], board, sizeof board - 1u) == 0);
+        (strncmp(tops[0], board, sizeof board - 1) == 0) && (strncmp(tops[1], board, sizeof board - 1) == 0);
 
     if (boards) {
-        text_add(text, "%.*s, %s", (int)strcspn(tops[0], "]"), tops[0], tops[1] + sizeof board - 1u);
+        text_add(text, "%.*s, %s", (int)strcspn(tops[0], "]"), tops[0], tops[1] + sizeof board - 1);
         return;
     }
     text_add(text, "%s%s", tops[0], (strcmp(tops[0], tops[1]) == 0) ? "" : tops[1]);
@@ -104,7 +101,7 @@ static void add_config(text_t *text, const atlas_case_t *pair) {
 
 /** On the shared bus: no collisions with the AI computer in INIT. */
 static bool starts_late(const atlas_case_t *pair, const campaign_row_t *row) {
-    return !pair->gateway && (row != NULL) && ((row->flags & CAMPAIGN_LATE_AI) != 0u);
+    return !pair->gateway && (row != NULL) && ((row->flags & CAMPAIGN_LATE_AI) != 0);
 }
 
 /** The vehicle drives, or has tripped, before the first fault comes. */
@@ -122,7 +119,7 @@ static void add_drive(text_t *text, atlas_state_t state) {
 
 static void add_steps(text_t *text, const atlas_case_t *pair) {
     const uint32_t first_ms = FIRST_MS[pair->state];
-    steps_t all = {.count = 0u};
+    steps_t all = {.count = 0};
 
     if (pair->first != NULL) {
         add_row(&all, pair->first, first_ms, pair->gateway);
@@ -134,7 +131,7 @@ static void add_steps(text_t *text, const atlas_case_t *pair) {
     if (pair->state != ATLAS_INIT) {
         add_drive(text, pair->state);
     }
-    for (size_t i = 0u; i < all.count; i++) {
+    for (size_t i = 0; i < all.count; i++) {
         text_add(text, "  - {at_ms: %" PRIu32 ", %s}\n", all.steps[i].at_ms, all.steps[i].words);
     }
     if (pair->state == ATLAS_INIT) {
@@ -156,6 +153,6 @@ void atlas_scenario_write(text_t *text, const atlas_case_t *pair) {
     text_add(text, "vehicle:\n  ai_starts_ms: %d\n",
              (starts_late(pair, pair->first) || starts_late(pair, pair->second)) ? LATE_AI_MS : 0);
     text_add(text, "duration_ms: %" PRIu32 "\n",
-             FIRST_MS[pair->state] + ATLAS_DISTANCE_MS[ATLAS_DISTANCES - 1u] + (uint32_t)AFTERWARDS_MS);
+             FIRST_MS[pair->state] + ATLAS_DISTANCE_MS[ATLAS_DISTANCES - 1] + (uint32_t)AFTERWARDS_MS);
     add_steps(text, pair);
 }

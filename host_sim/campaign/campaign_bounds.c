@@ -25,7 +25,7 @@ static json_t *settings(void) {
     agv_config_t config;
     json_t *object = json_object();
     agv_config_defaults(&config);
-    for (uint16_t i = 0u; i < AGV_SETTING_COUNT; i++) {
+    for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
         (void)json_object_set_new(object, agv_setting_info(i)->name, json_integer(agv_config_get(&config, i)));
     }
     return object;
@@ -42,8 +42,8 @@ static json_t *flags_of(const campaign_row_t *row) {
                                         "no_wire", "at_once_p", "late_ai", "again",      "in_gear"};
     _Static_assert(CAMPAIGN_FLAGS_END == (1u << (sizeof names / sizeof names[0])), "a flag has no name");
     json_t *list = json_array();
-    for (size_t bit = 0u; bit < sizeof names / sizeof names[0]; bit++) {
-        if (((row->flags >> bit) & 1u) != 0u) {
+    for (size_t bit = 0; bit < sizeof names / sizeof names[0]; bit++) {
+        if (((row->flags >> bit) & 1) != 0) {
             (void)json_array_append_new(list, json_string(names[bit]));
         }
     }
@@ -54,7 +54,7 @@ static json_t *rows(void) {
     static const char *const kinds[] = {"at_once", "tick",  "frame",       "frames",  "silence", "lasts",
                                         "gaps",    "stall", "unconfirmed", "contact", "clocks"};
     json_t *list = json_array();
-    for (size_t i = 0u; i < CAMPAIGN_ROW_COUNT; i++) {
+    for (size_t i = 0; i < CAMPAIGN_ROW_COUNT; i++) {
         const campaign_row_t *row = &CAMPAIGN_ROWS[i];
         (void)json_array_append_new(
             list, json_pack("{s:s, s:i, s:s, s:s?, s:s?, s:i, s:o}", "fault", agv_fault_name(row->fault), "rank",
@@ -67,7 +67,7 @@ static json_t *rows(void) {
 
 static json_t *engagements(void) {
     json_t *list = json_array();
-    for (size_t i = 0u; i < CAMPAIGN_ENGAGEMENT_COUNT; i++) {
+    for (size_t i = 0; i < CAMPAIGN_ENGAGEMENT_COUNT; i++) {
         const campaign_engagement_t *engagement = &CAMPAIGN_ENGAGEMENTS[i];
         (void)json_array_append_new(list,
                                     json_pack("{s:s, s:s?, s:b}", "fault", agv_fault_name(engagement->fault), "wait",
@@ -78,7 +78,7 @@ static json_t *engagements(void) {
 
 static json_t *faults(void) {
     json_t *list = json_array();
-    for (int fault = 0; fault < (int)AGV_FAULT_COUNT; fault++) {
+    for (int fault = 0; fault < AGV_FAULT_COUNT; fault++) {
         (void)json_array_append_new(list, json_string(agv_fault_name((agv_fault_t)fault)));
     }
     return list;
@@ -87,7 +87,7 @@ static json_t *faults(void) {
 /** Frame lengths of the simulated bus, in bits: of 0 to 8 bytes. */
 static json_t *frame_bits(bool extended) {
     json_t *list = json_array();
-    for (uint8_t length = 0u; length <= AGV_DLC; length++) {
+    for (uint8_t length = 0; length <= AGV_DLC; length++) {
         const hal_can_frame_t frame = {.length = length, .flags = extended ? (uint8_t)HAL_CAN_EXTENDED : (uint8_t)0};
         (void)json_array_append_new(list, json_integer((json_int_t)sim_bus_frame_bits(&frame)));
     }

@@ -66,7 +66,7 @@ bool campaign_is_safe_command(agv_message_t message, const hal_can_frame_t *fram
     case AGV_MSG_GEAR_COMMAND:
         return frame->data[0] == GEAR_P;
     case AGV_MSG_THROTTLE_COMMAND:
-        return frame->data[0] == 0u;
+        return frame->data[0] == 0;
     case AGV_MSG_TURN_SIGNAL_COMMAND:
         return memcmp(frame->data, SAFE_SIGNALS, sizeof SAFE_SIGNALS) == 0;
     default:
@@ -75,7 +75,7 @@ bool campaign_is_safe_command(agv_message_t message, const hal_can_frame_t *fram
 }
 
 static uint16_t angle_of(const hal_can_frame_t *frame) {
-    return (uint16_t)(frame->data[0] | ((uint32_t)frame->data[1] << 8u));
+    return (uint16_t)(frame->data[0] | ((uint32_t)frame->data[1] << 8));
 }
 
 /** 065h: the angle at which the steering was, and always the same. */
@@ -178,7 +178,7 @@ static uint64_t now_us(const campaign_check_t *check) {
 /** Whether the row's message stayed away: its frames may be late on a slow bus that is full. */
 static bool is_silent(const campaign_check_t *check) {
     const agv_message_t message = check->plan->row->message;
-    const uint64_t two_cycles_us = (uint64_t)agv_message_cycle_ms(message) * 2u * US_PER_MS;
+    const uint64_t two_cycles_us = (uint64_t)agv_message_cycle_ms(message) * 2 * US_PER_MS;
     return (message != AGV_MSG_NONE) && (now_us(check) - check->heard_us > two_cycles_us);
 }
 
@@ -187,18 +187,18 @@ static void on_state(campaign_check_t *check, uint64_t t_ms, const agv_event_t *
         check->states[check->state_count] = (campaign_state_t){t_ms, event->b, event->c};
         check->state_count++;
     }
-    if ((event->b == (uint8_t)AGV_STATE_TRIPPED) && (check->reason < 0)) {
+    if ((event->b == AGV_STATE_TRIPPED) && (check->reason < 0)) {
         check->reason = event->c;
         check->silent = is_silent(check);
         check->angle_ddeg =
             (check->plan->row->fault == AGV_FAULT_STEERING_ANGLE_INVALID) ? check->reported_ddeg : measured_ddeg(check);
     }
-    if (event->b != (uint8_t)AGV_STATE_SAFE) {
+    if (event->b != AGV_STATE_SAFE) {
         return;
     }
     check->confirmed_us = (check->confirmed_us == CAMPAIGN_NEVER) ? now_us(check) : check->confirmed_us;
     const scenario_testbed_view_t view = look(check);
-    const bool parked = (view.vehicle.gear == (uint8_t)AGV_GEAR_P) && !view.vehicle.autopilot;
+    const bool parked = (view.vehicle.gear == AGV_GEAR_P) && !view.vehicle.autopilot;
     if (!parked && !campaign_has_flag(check, CAMPAIGN_LIES)) {
         note_break(check, CAMPAIGN_FALSE_CONFIRM, now_us(check));
     }
@@ -209,12 +209,12 @@ static void on_event(void *ctx, const session_event_t *event) {
     if (event->is_led) {
         return;
     }
-    if (event->recorded.kind == (uint8_t)AGV_EVENT_STATE) {
+    if (event->recorded.kind == AGV_EVENT_STATE) {
         on_state(check, event->t_ms, &event->recorded);
     }
-    if ((event->recorded.kind == (uint8_t)AGV_EVENT_FAULT) && (event->recorded.c != 0u)) {
+    if ((event->recorded.kind == AGV_EVENT_FAULT) && (event->recorded.c != 0)) {
         check->raised = check->raised || (event->recorded.a == (uint8_t)check->plan->row->fault);
-        check->bus_off = check->bus_off || (event->recorded.a == (uint8_t)AGV_FAULT_BUS_OFF);
+        check->bus_off = check->bus_off || (event->recorded.a == AGV_FAULT_BUS_OFF);
     }
 }
 
@@ -227,7 +227,7 @@ static void check_readiness(campaign_check_t *check) {
     const campaign_plan_t *plan = check->plan;
     check->engaged = look(check).vehicle.autopilot;
     const bool as_planned = (check->engaged == plan->engaged) || (plan->engagement != NULL);
-    if ((plan->cause_ms != 0u) && (!check->was_closed || !as_planned)) {
+    if ((plan->cause_ms != 0) && (!check->was_closed || !as_planned)) {
         note_break(check, CAMPAIGN_NOT_READY, check->cause_us);
     }
 }
@@ -240,7 +240,7 @@ static uint64_t changed_us(const campaign_check_t *check, uint64_t t_ms) {
 void campaign_check_tick(campaign_check_t *check, uint64_t t_ms) {
     const bool closed = look(check).output_closed;
     const campaign_plan_t *plan = check->plan;
-    const uint64_t step_ms = plan->cause_ms - (campaign_has_flag(check, CAMPAIGN_LATER) ? plan->number : 0u);
+    const uint64_t step_ms = plan->cause_ms - (campaign_has_flag(check, CAMPAIGN_LATER) ? plan->number : 0);
 
     if (closed && !check->was_closed) {
         if (check->opened_us != CAMPAIGN_NEVER) {
@@ -255,7 +255,7 @@ void campaign_check_tick(campaign_check_t *check, uint64_t t_ms) {
         check->opened_us = (check->opened_us == CAMPAIGN_NEVER) ? changed_us(check, t_ms) : check->opened_us;
     }
     check->was_closed = closed;
-    if (t_ms + 1u == step_ms) {
+    if (t_ms + 1 == step_ms) {
         check_readiness(check);
     }
     if (t_ms == plan->steps_ms) {
@@ -274,11 +274,11 @@ static void check_bound(campaign_check_t *check) {
 static bool is_lost_instead(const campaign_check_t *check) {
     switch (check->plan->row->fault) {
     case AGV_FAULT_VCU_HEARTBEAT_STUCK:
-        return check->silent && (check->reason == (int)AGV_FAULT_VCU_HEARTBEAT_LOST);
+        return check->silent && (check->reason == AGV_FAULT_VCU_HEARTBEAT_LOST);
     case AGV_FAULT_EPS_HEARTBEAT_STUCK:
-        return check->silent && (check->reason == (int)AGV_FAULT_EPS_HEARTBEAT_LOST);
+        return check->silent && (check->reason == AGV_FAULT_EPS_HEARTBEAT_LOST);
     case AGV_FAULT_AI_HEARTBEAT_STUCK:
-        return check->silent && (check->reason == (int)AGV_FAULT_AI_HEARTBEAT_LOST);
+        return check->silent && (check->reason == AGV_FAULT_AI_HEARTBEAT_LOST);
     default:
         return false;
     }
@@ -291,7 +291,7 @@ static bool is_wrong_reason(const campaign_check_t *check) {
 
 void campaign_check_finish(campaign_check_t *check) {
     const campaign_plan_t *plan = check->plan;
-    const uint64_t end_us = ((uint64_t)plan->duration_ms + 1u) * US_PER_MS;
+    const uint64_t end_us = ((uint64_t)plan->duration_ms + 1) * US_PER_MS;
 
     check_bound(check);
     if (is_wrong_reason(check)) {

@@ -72,7 +72,7 @@ bool campaign_is_safe_command(agv_message_t message, const hal_can_frame_t *fram
 
 /** Whether the row of the fault has a flag, CAMPAIGN_*. */
 static inline bool campaign_has_flag(const campaign_check_t *check, uint32_t flag) {
-    return (check->plan->row->flags & flag) != 0u;
+    return (check->plan->row->flags & flag) != 0;
 }
 
 void campaign_check_init(campaign_check_t *check, const campaign_plan_t *plan, const scenario_testbed_t *testbed);

@@ -94,7 +94,7 @@ static bool is_null(const json_t *value) {
 
 static bool is_break(const json_t *value) {
     bool known = json_is_null(value);
-    for (int broken = (int)CAMPAIGN_SOUND + 1; broken < (int)CAMPAIGN_BREAKS; broken++) {
+    for (int broken = (int)CAMPAIGN_SOUND + 1; broken < CAMPAIGN_BREAKS; broken++) {
         known = known || is_text(value, campaign_break_name((campaign_break_t)broken));
     }
     return known;
@@ -102,7 +102,7 @@ static bool is_break(const json_t *value) {
 
 /** @return NULL: no error; else what is wrong, for a message */
 static const char *find_error(const json_t *object, const key_line_t *keys, size_t count) {
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         if (!keys[i].fits(json_object_get(object, keys[i].name))) {
             return keys[i].name;
         }

@@ -28,7 +28,7 @@ typedef struct {
 /** Whether the line is what this program writes: it goes into the merged file as it is. */
 static bool is_as_written(const shard_t *shard, size_t length, const json_t *object) {
     char *text = json_dumps(object, 0);
-    const bool same = (text != NULL) && (strlen(text) == length - 1u) && (memcmp(text, shard->line, length - 1u) == 0);
+    const bool same = (text != NULL) && (strlen(text) == length - 1) && (memcmp(text, shard->line, length - 1) == 0);
     free(text);
     return same;
 }
@@ -41,7 +41,7 @@ static json_t *read_object(shard_t *shard) {
     if (length < 0) {
         if (errno != 0) {
             (void)report("%s: %s", shard->path, strerror(errno));
-        } else if (shard->number == 0u) {
+        } else if (shard->number == 0) {
             (void)report("%s: is empty", shard->path);
         } else {
             (void)report("%s: it ends after line %zu: runs are missing", shard->path, shard->number);
@@ -71,7 +71,7 @@ static bool read_part(shard_t *shard, campaign_part_t *part) {
 
 /** Read run @p run into a sample. */
 static bool read_run(shard_t *shard, const campaign_part_t *whole, uint64_t run, campaign_sample_t *sample) {
-    uint64_t number = 0u;
+    uint64_t number = 0;
     json_t *object = read_object(shard);
     const bool good = (object != NULL) && campaign_line_run(shard->path, shard->number, object, &number, sample);
     json_decref(object);
@@ -98,12 +98,12 @@ static bool is_same(const campaign_part_t *a, const campaign_part_t *b) {
 static bool sort_shards(shard_t *shards, size_t count, campaign_part_t *whole) {
     shard_t sorted[SHARDS_MAX];
     memset(sorted, 0, sizeof sorted);
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         campaign_part_t part;
         if (!read_part(&shards[i], &part)) {
             return false;
         }
-        *whole = (i == 0u) ? part : *whole;
+        *whole = (i == 0) ? part : *whole;
         if (!is_same(&part, whole)) {
             return report_at(shards[i].path, shards[i].number, "not the same campaign as %s", shards[0].path);
         }
@@ -111,20 +111,20 @@ static bool sort_shards(shard_t *shards, size_t count, campaign_part_t *whole) {
             return report_at(shards[i].path, shards[i].number, "it is one of %" PRIu32 " shards, but %zu were given",
                              part.shards, count);
         }
-        if (sorted[part.shard - 1u].path != NULL) {
+        if (sorted[part.shard - 1].path != NULL) {
             return report_at(shards[i].path, shards[i].number, "shard %" PRIu32 " is given twice", part.shard);
         }
-        sorted[part.shard - 1u] = shards[i];
+        sorted[part.shard - 1] = shards[i];
     }
     memcpy(shards, sorted, count * sizeof *shards);
-    whole->shard = 1u;
-    whole->shards = 1u;
+    whole->shard = 1;
+    whole->shards = 1;
     return true;
 }
 
 static bool is_at_end(shard_t *shard) {
     const bool at_end = getline(&shard->line, &shard->room, shard->stream) < 0;
-    return at_end || report_at(shard->path, shard->number + 1u, "more runs than the campaign has");
+    return at_end || report_at(shard->path, shard->number + 1, "more runs than the campaign has");
 }
 
 static bool merge(shard_t *shards, size_t count, campaign_samples_t *samples, output_t *merged) {
@@ -137,8 +137,8 @@ static bool merge(shard_t *shards, size_t count, campaign_samples_t *samples, ou
     if (merged->is_open) {
         campaign_write_part(merged, &whole);
     }
-    for (uint64_t run = 0u; run < whole.runs; run++) {
-        if (((run % RUNS_BETWEEN_LOOKS) == 0u) && interrupt_pending()) {
+    for (uint64_t run = 0; run < whole.runs; run++) {
+        if (((run % RUNS_BETWEEN_LOOKS) == 0) && interrupt_pending()) {
             return false;
         }
         shard_t *shard = &shards[run % count];
@@ -150,7 +150,7 @@ static bool merge(shard_t *shards, size_t count, campaign_samples_t *samples, ou
         }
     }
     bool good = true;
-    for (size_t i = 0u; good && (i < count); i++) {
+    for (size_t i = 0; good && (i < count); i++) {
         good = is_at_end(&shards[i]);
     }
     return good;
@@ -176,7 +176,7 @@ static bool open_shard(shard_t *shard) {
 }
 
 static bool open_shards(shard_t *shards, char *const files[], size_t count) {
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         shards[i].path = files[i];
         if (!open_shard(&shards[i])) {
             return false;
@@ -198,7 +198,7 @@ bool campaign_merge(char *const files[], size_t count, campaign_samples_t *sampl
         return report("out of memory");
     }
     const bool good = open_shards(shards, files, count) && merge(shards, count, samples, merged);
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         close_shard(&shards[i]);
     }
     free(shards);

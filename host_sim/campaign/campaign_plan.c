@@ -29,43 +29,43 @@ enum { THROTTLE_MIN_PCT = 5, STEER_MAX_DEG = 30, DRIVE_MS = 1000 };
 
 /** What kind of vehicle and supervisor. */
 static void choose_kind(campaign_plan_t *plan, uint64_t *state) {
-    static const uint32_t bitrates[] = {125000u, 250000u, 500000u};
+    static const uint32_t bitrates[] = {125000, 250000, 500000};
     const uint32_t flags = plan->row->flags;
-    const bool engaged_in_gear = (plan->engagement != NULL) && ((flags & CAMPAIGN_IN_GEAR) != 0u);
-    const bool shared = ((flags & CAMPAIGN_SHARED) != 0u) || engaged_in_gear;
-    const bool gateway = prng_toss(state, 2u) && !shared;
-    const bool manual = prng_toss(state, 4u);
+    const bool engaged_in_gear = (plan->engagement != NULL) && ((flags & CAMPAIGN_IN_GEAR) != 0);
+    const bool shared = ((flags & CAMPAIGN_SHARED) != 0) || engaged_in_gear;
+    const bool gateway = prng_toss(state, 2) && !shared;
+    const bool manual = prng_toss(state, 4);
 
-    plan->bitrate = bitrates[prng_draw(state, 0u, 2u)];
-    plan->gateway = ((flags & CAMPAIGN_GATEWAY) != 0u) || gateway;
-    plan->table_ids = prng_toss(state, 4u);
-    plan->park_guard = !prng_toss(state, 4u);
-    plan->at_standstill = prng_toss(state, 4u) && ((flags & CAMPAIGN_AT_ONCE_P) == 0u);
-    plan->engaged = ((flags & CAMPAIGN_ENGAGED) != 0u) || (((flags & CAMPAIGN_MANUAL) == 0u) && !manual);
-    plan->bunched = prng_toss(state, 2u);
-    plan->tick_phase_us = prng_toss(state, 2u) ? 0u : (uint16_t)prng_draw(state, 0u, TICK_SPAN_US - 1u);
+    plan->bitrate = bitrates[prng_draw(state, 0, 2)];
+    plan->gateway = ((flags & CAMPAIGN_GATEWAY) != 0) || gateway;
+    plan->table_ids = prng_toss(state, 4);
+    plan->park_guard = !prng_toss(state, 4);
+    plan->at_standstill = prng_toss(state, 4) && ((flags & CAMPAIGN_AT_ONCE_P) == 0);
+    plan->engaged = ((flags & CAMPAIGN_ENGAGED) != 0) || (((flags & CAMPAIGN_MANUAL) == 0) && !manual);
+    plan->bunched = prng_toss(state, 2);
+    plan->tick_phase_us = prng_toss(state, 2) ? 0 : (uint16_t)prng_draw(state, 0, TICK_SPAN_US - 1);
     plan->clock_start_ms = (uint32_t)prng_next(state);
     plan->number = prng_draw(state, plan->row->lowest, plan->row->highest);
     /* Without a valid configuration the built-in identifiers apply. */
-    plan->renumbered = prng_toss(state, 8u) && (plan->row->fault > AGV_FAULT_CONFIG_INVALID);
+    plan->renumbered = prng_toss(state, 8) && (plan->row->fault > AGV_FAULT_CONFIG_INVALID);
 }
 
 /** The cause comes under way, or is there from the start on. @return from the cause to the decision at the latest */
 static uint32_t choose_moment(campaign_plan_t *plan, uint64_t *state, const agv_config_t *config) {
     const uint32_t flags = plan->row->flags;
-    const uint32_t under_way_ms = ENGAGE_MS + SETTLED_MS + prng_draw(state, 0u, SPAN_MS);
+    const uint32_t under_way_ms = ENGAGE_MS + SETTLED_MS + prng_draw(state, 0, SPAN_MS);
 
-    plan->steps_ms = ((flags & CAMPAIGN_START) != 0u) ? 0u : under_way_ms;
-    plan->cause_ms = plan->steps_ms + (((flags & CAMPAIGN_LATER) != 0u) ? plan->number : 0u);
+    plan->steps_ms = ((flags & CAMPAIGN_START) != 0) ? 0 : under_way_ms;
+    plan->cause_ms = plan->steps_ms + (((flags & CAMPAIGN_LATER) != 0) ? plan->number : 0);
     return campaign_decision_ms(plan->row, config);
 }
 
 /** The cause comes shortly before or after an engagement, which it waits for. */
 static uint32_t choose_engagement(campaign_plan_t *plan, uint64_t *state, const agv_config_t *config) {
-    const uint32_t shift_ms = prng_draw(state, 0u, BEFORE_MS + AFTER_MS);
+    const uint32_t shift_ms = prng_draw(state, 0, BEFORE_MS + AFTER_MS);
 
-    plan->engage_ms = ENGAGE_MS + prng_draw(state, 0u, START_SPAN_MS - 1u);
-    plan->steps_ms = plan->engagement->never_seen ? 0u : plan->engage_ms - BEFORE_MS + shift_ms;
+    plan->engage_ms = ENGAGE_MS + prng_draw(state, 0, START_SPAN_MS - 1);
+    plan->steps_ms = plan->engagement->never_seen ? 0 : plan->engage_ms - BEFORE_MS + shift_ms;
     plan->cause_ms = (plan->steps_ms > plan->engage_ms) ? plan->steps_ms : plan->engage_ms;
     return campaign_engaged_decision_ms(plan->row, plan->engagement, config);
 }
@@ -76,16 +76,16 @@ static void choose_times(campaign_plan_t *plan, uint64_t *state, const agv_confi
         (plan->engagement != NULL) ? choose_engagement(plan, state, config) : choose_moment(plan, state, config);
 
     plan->bound_us = (decision_ms * (uint32_t)US_PER_MS) + campaign_wire_us(plan->bitrate);
-    uint32_t afterwards_ms = ((flags & CAMPAIGN_NO_WIRE) != 0u) ? AFTER_STALL_MS : AFTERWARDS_MS;
+    uint32_t afterwards_ms = ((flags & CAMPAIGN_NO_WIRE) != 0) ? AFTER_STALL_MS : AFTERWARDS_MS;
     afterwards_ms = plan->at_standstill ? (uint32_t)AFTER_STANDSTILL_MS : afterwards_ms;
-    plan->duration_ms = plan->cause_ms + (plan->bound_us / (uint32_t)US_PER_MS) + afterwards_ms;
+    plan->duration_ms = plan->cause_ms + (plan->bound_us / US_PER_MS) + afterwards_ms;
 }
 
 /** Every identifier is a setting. Their order, which is the priority on the wire, stays the same. */
 static void add_identifiers(campaign_plan_t *plan) {
-    for (uint32_t m = 0u; m < (uint32_t)AGV_MSG_COUNT; m++) {
+    for (uint32_t m = 0; m < AGV_MSG_COUNT; m++) {
         text_add(&plan->head, "  id_%s: 0x%03X\n", agv_message_name((agv_message_t)m),
-                 agv_message_id(m, plan->table_ids ? AGV_ID_SET_TABLE : AGV_ID_SET_HEADING) + 1u);
+                 agv_message_id(m, plan->table_ids ? AGV_ID_SET_TABLE : AGV_ID_SET_HEADING) + 1);
     }
 }
 
@@ -109,20 +109,20 @@ static void add_kind(campaign_plan_t *plan) {
 /** When nodes and messages begin. In a bunch they fall together again and again; else each has its own phase. */
 static void add_phases(campaign_plan_t *plan, uint64_t *state) {
     text_t *text = &plan->head;
-    const bool at_start = (plan->row->flags & CAMPAIGN_START) != 0u;
-    const uint32_t together_ms = prng_draw(state, 0u, 9u);
-    const uint32_t span_ms = (plan->bunched || at_start) ? 0u : (uint32_t)START_SPAN_MS - 1u;
+    const bool at_start = (plan->row->flags & CAMPAIGN_START) != 0;
+    const uint32_t together_ms = prng_draw(state, 0, 9);
+    const uint32_t span_ms = (plan->bunched || at_start) ? 0 : (uint32_t)START_SPAN_MS - 1;
 
     text_add(text, "vehicle:\n  park_guard: %s\n", plan->park_guard ? "true" : "false");
-    text_add(text, "  vcu_starts_ms: %" PRIu32 "\n", prng_draw(state, 0u, span_ms));
-    text_add(text, "  eps_starts_ms: %" PRIu32 "\n", prng_draw(state, 0u, span_ms));
+    text_add(text, "  vcu_starts_ms: %" PRIu32 "\n", prng_draw(state, 0, span_ms));
+    text_add(text, "  eps_starts_ms: %" PRIu32 "\n", prng_draw(state, 0, span_ms));
     text_add(text, "  ai_starts_ms: %" PRIu32 "\n",
-             prng_draw(state, 0u, span_ms) + (((plan->row->flags & CAMPAIGN_LATE_AI) != 0u) ? LATE_AI_MS : 0u));
+             prng_draw(state, 0, span_ms) + (((plan->row->flags & CAMPAIGN_LATE_AI) != 0) ? LATE_AI_MS : 0));
     text_add(text, "  phases_ms: {");
     for (int m = 0; m < AGV_MSG_COUNT; m++) {
         const uint32_t cycle_ms = agv_message_cycle_ms((agv_message_t)m);
-        const uint32_t own_ms = prng_draw(state, 0u, cycle_ms - 1u);
-        const uint32_t near_ms = together_ms + (prng_toss(state, 4u) ? 1u : 0u);
+        const uint32_t own_ms = prng_draw(state, 0, cycle_ms - 1);
+        const uint32_t near_ms = together_ms + (prng_toss(state, 4) ? 1 : 0);
         text_add(text, "%s%s: %" PRIu32, (m > 0) ? ", " : "", agv_message_name((agv_message_t)m),
                  plan->bunched ? near_ms : own_ms);
     }
@@ -132,7 +132,7 @@ static void add_phases(campaign_plan_t *plan, uint64_t *state) {
 /** The steps that make the vehicle drive before the cause. @return throttle */
 static uint32_t add_driver(campaign_plan_t *plan, uint64_t *state) {
     const uint32_t throttle_pct = prng_draw(state, THROTTLE_MIN_PCT, CAMPAIGN_THROTTLE_MAX_PCT);
-    const int steer_deg = (int)prng_draw(state, 0u, 2u * STEER_MAX_DEG) - STEER_MAX_DEG;
+    const int steer_deg = (int)prng_draw(state, 0, 2 * STEER_MAX_DEG) - STEER_MAX_DEG;
 
     text_add(&plan->head, "  - {at_ms: %d, ai: drive, gear: D, throttle_pct: %" PRIu32 ", steer_deg: %d}\n", DRIVE_MS,
              throttle_pct, steer_deg);
@@ -142,7 +142,7 @@ static uint32_t add_driver(campaign_plan_t *plan, uint64_t *state) {
 static void add_drive(campaign_plan_t *plan, uint64_t *state) {
     text_t *text = &plan->head;
     const uint32_t throttle_pct = add_driver(plan, state);
-    const uint32_t engage_ms = ENGAGE_MS + prng_draw(state, 0u, START_SPAN_MS - 1u);
+    const uint32_t engage_ms = ENGAGE_MS + prng_draw(state, 0, START_SPAN_MS - 1);
 
     if (plan->engaged) {
         text_add(text, "  - {at_ms: %" PRIu32 ", operator: engage}\n", engage_ms);
@@ -155,17 +155,17 @@ static void add_drive(campaign_plan_t *plan, uint64_t *state) {
 static void add_cause(campaign_plan_t *plan, uint64_t *state) {
     const campaign_values_t values = {.number = plan->number, .gateway = plan->gateway, .table_ids = plan->table_ids};
     campaign_step_t steps[CAMPAIGN_STEPS_MAX];
-    const uint32_t alternative = prng_draw(state, 0u, campaign_alternatives(plan->row) - 1u);
+    const uint32_t alternative = prng_draw(state, 0, campaign_alternatives(plan->row) - 1);
     const size_t count = campaign_steps(plan->row, alternative, plan->steps_ms, &values, steps);
 
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         text_add(&plan->head, "  - {at_ms: %" PRIu32 ", %s}\n", steps[i].at_ms, steps[i].words);
     }
 }
 
 /** Driven by remote control, then an engagement and the cause, in their order. */
 static void add_engaged_steps(campaign_plan_t *plan, uint64_t *state) {
-    const bool first = plan->steps_ms < (uint32_t)DRIVE_MS;
+    const bool first = plan->steps_ms < DRIVE_MS;
     const bool last = plan->steps_ms > plan->engage_ms;
 
     if (first) {
@@ -196,7 +196,7 @@ static void add_steps(campaign_plan_t *plan, uint64_t *state) {
 /** Choose the fault to cause. */
 static void choose_row(campaign_plan_t *plan, uint64_t *state, const campaign_causes_t *causes) {
     const size_t count = causes->newly_engaged ? CAMPAIGN_ENGAGEMENT_COUNT : CAMPAIGN_ROW_COUNT;
-    const uint32_t any = prng_draw(state, 0u, (uint32_t)count - 1u);
+    const uint32_t any = prng_draw(state, 0, (uint32_t)count - 1);
 
     plan->row = causes->newly_engaged ? campaign_row(CAMPAIGN_ENGAGEMENTS[any].fault) : &CAMPAIGN_ROWS[any];
     plan->row = (causes->only != NULL) ? causes->only : plan->row;
@@ -218,7 +218,7 @@ void campaign_plan_make(campaign_plan_t *plan, uint64_t seed, uint64_t run, cons
     add_kind(plan);
     add_phases(plan, &state);
     text_add(&plan->head, "duration_ms: %" PRIu32 "\n", plan->duration_ms);
-    if ((plan->row->flags & CAMPAIGN_START) == 0u) {
+    if ((plan->row->flags & CAMPAIGN_START) == 0) {
         add_steps(plan, &state);
     }
 }

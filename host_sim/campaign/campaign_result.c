@@ -11,7 +11,7 @@ enum { FIRST_ROOM = 1024 };
 
 bool campaign_samples_add(campaign_samples_t *samples, const campaign_sample_t *sample) {
     if (samples->count == samples->room) {
-        const size_t room = (samples->room == 0u) ? (size_t)FIRST_ROOM : samples->room * 2u;
+        const size_t room = (samples->room == 0) ? (size_t)FIRST_ROOM : samples->room * 2;
         campaign_sample_t *larger = realloc(samples->samples, room * sizeof *larger);
         if (larger == NULL) {
             return report("out of memory");
@@ -45,7 +45,7 @@ campaign_sample_t campaign_sample_of(const campaign_check_t *check) {
 }
 
 static json_t *fault_or_null(int fault) {
-    const char *name = ((fault >= 0) && (fault < (int)AGV_FAULT_COUNT)) ? agv_fault_name((agv_fault_t)fault) : NULL;
+    const char *name = ((fault >= 0) && (fault < AGV_FAULT_COUNT)) ? agv_fault_name((agv_fault_t)fault) : NULL;
     return (name != NULL) ? json_string(name) : json_null();
 }
 
@@ -61,7 +61,7 @@ void campaign_write_part(output_t *output, const campaign_part_t *part) {
                           "shards", (int)part->shards, "fault", fault_or_null((only != NULL) ? (int)only->fault : -1),
                           "newly_engaged", (int)part->causes.newly_engaged, "planted",
                           json_null() /* kept for results of older versions */),
-                0u);
+                0);
 }
 
 void campaign_write_run(output_t *output, const campaign_check_t *check) {
@@ -82,5 +82,5 @@ void campaign_write_run(output_t *output, const campaign_check_t *check) {
     (void)json_object_set_new(object, "reason", fault_or_null(check->reason));
     (void)json_object_set_new(object, "broken",
                               sample.broken ? json_string(campaign_break_name(check->broken)) : json_null());
-    output_json(output, object, 0u);
+    output_json(output, object, 0);
 }

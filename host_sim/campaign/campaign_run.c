@@ -130,15 +130,15 @@ static bool run_all(campaign_t *campaign) {
     const campaign_part_t *part = &campaign->request->part;
     const uint64_t mine = (part->runs - part->shard + part->shards) / part->shards;
     progress_t progress;
-    uint64_t done = 0u;
+    uint64_t done = 0;
     bool good = true;
 
-    progress_begin(&progress, (mine > 0u) ? mine : 1u);
-    for (uint64_t run = part->shard - 1u; good && (run < part->runs); run += part->shards) {
+    progress_begin(&progress, (mine > 0) ? mine : 1);
+    for (uint64_t run = part->shard - 1; good && (run < part->runs); run += part->shards) {
         good = run_one(campaign, run) && store_result(campaign);
         done++;
         progress_show(&progress, done, "runs");
-        if (((done % LOOK_FOR_SIGNALS_EVERY) == 0u) && (interrupt_pending() || !outputs_work(campaign))) {
+        if (((done % LOOK_FOR_SIGNALS_EVERY) == 0) && (interrupt_pending() || !outputs_work(campaign))) {
             good = false;
         }
     }
@@ -148,7 +148,7 @@ static bool run_all(campaign_t *campaign) {
 
 static status_t conclude(campaign_t *campaign) {
     if (output_is_stdout(campaign->request->results) || output_is_stdout(campaign->request->why)) {
-        return (campaign->broken == 0u) ? STATUS_OK : STATUS_UNMET; /* no table: standard output has the results */
+        return (campaign->broken == 0) ? STATUS_OK : STATUS_UNMET; /* no table: standard output has the results */
     }
     if (campaign->broken > FILES_MAX) {
         (void)printf("%zu broken runs, scenarios of the first %d\n", campaign->broken, FILES_MAX);
@@ -156,7 +156,7 @@ static status_t conclude(campaign_t *campaign) {
     if (!campaign_print_table(&campaign->samples)) {
         return STATUS_UNUSABLE;
     }
-    return (campaign->broken == 0u) ? STATUS_OK : STATUS_UNMET;
+    return (campaign->broken == 0) ? STATUS_OK : STATUS_UNMET;
 }
 
 static status_t run_campaign(campaign_t *campaign) {
@@ -173,7 +173,7 @@ static status_t run_campaign(campaign_t *campaign) {
     if (!whole && outputs_work(campaign)) {
         return STATUS_UNUSABLE;
     }
-    if (!output_flush_all(&campaign->results, 1u) || !output_commit(&campaign->why_lines) ||
+    if (!output_flush_all(&campaign->results, 1) || !output_commit(&campaign->why_lines) ||
         !output_commit(&campaign->results)) {
         return STATUS_UNUSABLE;
     }
@@ -192,7 +192,7 @@ static status_t show_one(campaign_t *campaign) {
 }
 
 status_t campaign_run(const campaign_request_t *request) {
-    campaign_t *campaign = calloc(1u, sizeof *campaign);
+    campaign_t *campaign = calloc(1, sizeof *campaign);
     if (campaign == NULL) {
         (void)report("out of memory");
         return STATUS_UNUSABLE;

@@ -12,7 +12,7 @@ void campaign_settings(text_t *text, const campaign_row_t *row) {
     if (row->fault == AGV_FAULT_CONFIG_INVALID) {
         text_add(text, "  own_heartbeat: frozen\n");
     }
-    if ((row->flags & CAMPAIGN_AS_TRIP) != 0u) {
+    if ((row->flags & CAMPAIGN_AS_TRIP) != 0) {
         char key[CONFIG_CLASS_KEY_SIZE];
         config_class_key(row->fault, key);
         text_add(text, "  %s: trip\n", key);
@@ -20,9 +20,9 @@ void campaign_settings(text_t *text, const campaign_row_t *row) {
 }
 
 uint32_t campaign_alternatives(const campaign_row_t *row) {
-    uint32_t count = 1u;
+    uint32_t count = 1;
     for (const char *at = row->steps; *at != '\0'; at++) {
-        count += (*at == '/') ? 1u : 0u;
+        count += (*at == '/') ? 1 : 0;
     }
     return count;
 }
@@ -42,9 +42,9 @@ static void format_value(char letter, const campaign_values_t *values, char *tex
 
 /** One step, with its placeholders filled in. @return where it ends */
 static const char *fill_in(const char *at, const campaign_values_t *values, char words[CAMPAIGN_WORDS_SIZE]) {
-    size_t used = 0u;
+    size_t used = 0;
 
-    for (; (strchr("|/", *at) == NULL) && (used + 1u < CAMPAIGN_WORDS_SIZE); at++) {
+    for (; (strchr("|/", *at) == NULL) && (used + 1 < CAMPAIGN_WORDS_SIZE); at++) {
         if (*at != '$') {
             words[used] = *at;
             used++;
@@ -61,9 +61,9 @@ static const char *fill_in(const char *at, const campaign_values_t *values, char
 size_t campaign_steps(const campaign_row_t *row, uint32_t alternative, uint32_t from_ms,
                       const campaign_values_t *values, campaign_step_t *steps) {
     const char *at = row->steps;
-    size_t count = 0u;
+    size_t count = 0;
 
-    for (; alternative > 0u; alternative--) {
+    for (; alternative > 0; alternative--) {
         at = strchr(at, '/') + 1;
     }
     while ((*at != '\0') && (*at != '/') && (count < CAMPAIGN_STEPS_MAX)) {

@@ -46,13 +46,13 @@ static int32_t maximum(int32_t one, int32_t two) {
 static line_t sum_up(const campaign_samples_t *samples, size_t row, int32_t *safe) {
     line_t line = {.confirmed_us = CAMPAIGN_NO_TIME, .opened_us = CAMPAIGN_NO_TIME};
 
-    for (size_t i = 0u; i < samples->count; i++) {
+    for (size_t i = 0; i < samples->count; i++) {
         const campaign_sample_t *sample = &samples->samples[i];
         if (sample->row != row) {
             continue;
         }
         line.runs++;
-        line.broken += sample->broken ? 1u : 0u;
+        line.broken += sample->broken ? 1 : 0;
         line.confirmed_us = maximum(line.confirmed_us, sample->confirmed_us);
         line.opened_us = maximum(line.opened_us, sample->opened_us);
         if (sample->safe_us != CAMPAIGN_NO_TIME) {
@@ -66,17 +66,17 @@ static line_t sum_up(const campaign_samples_t *samples, size_t row, int32_t *saf
 
 static void print_line(size_t row, const line_t *line, const int32_t *safe) {
     (void)printf("%-26s %8zu", agv_fault_name(CAMPAIGN_ROWS[row].fault), line->runs);
-    print_time((line->safe_count > 0u) ? safe[0] : CAMPAIGN_NO_TIME);
-    print_time((line->safe_count > 0u) ? safe[line->safe_count / 2u] : CAMPAIGN_NO_TIME);
-    print_time((line->safe_count > 0u) ? safe[line->safe_count - 1u] : CAMPAIGN_NO_TIME);
+    print_time((line->safe_count > 0) ? safe[0] : CAMPAIGN_NO_TIME);
+    print_time((line->safe_count > 0) ? safe[line->safe_count / 2] : CAMPAIGN_NO_TIME);
+    print_time((line->safe_count > 0) ? safe[line->safe_count - 1] : CAMPAIGN_NO_TIME);
     print_time(line->confirmed_us);
     print_time(line->opened_us);
     (void)printf(" %7zu\n", line->broken);
 }
 
 bool campaign_print_table(const campaign_samples_t *samples) {
-    int32_t *safe = malloc((samples->count + 1u) * sizeof *safe);
-    size_t broken = 0u;
+    int32_t *safe = malloc((samples->count + 1) * sizeof *safe);
+    size_t broken = 0;
 
     if (safe == NULL) {
         return report("out of memory");
@@ -84,10 +84,10 @@ bool campaign_print_table(const campaign_samples_t *samples) {
     (void)printf("ms after the cause:                    first safe frame           confirmed output\n"
                  "%-26s %8s %9s %9s %9s %9s %9s %7s\n",
                  "fault", "runs", "min", "median", "max", "max", "max", "broken");
-    for (size_t row = 0u; row < CAMPAIGN_ROW_COUNT; row++) {
+    for (size_t row = 0; row < CAMPAIGN_ROW_COUNT; row++) {
         const line_t line = sum_up(samples, row, safe);
         broken += line.broken;
-        if (line.runs > 0u) {
+        if (line.runs > 0) {
             print_line(row, &line, safe);
         }
     }

@@ -38,7 +38,7 @@ static json_t *trips_of(const why_t *why) {
     const why_names_t names = {.log = NULL};
     json_t *object = why_json(why, &names);
     json_t *trips = json_incref(json_object_get(object, "trips"));
-    for (size_t i = 0u; i < json_array_size(trips); i++) {
+    for (size_t i = 0; i < json_array_size(trips); i++) {
         (void)json_object_del(json_array_get(trips, i), "evidence");
     }
     json_decref(object);
@@ -51,7 +51,7 @@ void campaign_why_write(campaign_why_t *why, output_t *output, const campaign_pl
         json_pack("{s:I, s:s, s:b, s:i, s:i, s:i, s:o}", "run", (json_int_t)plan->run, "fault",
                   agv_fault_name(plan->row->fault), "gateway", (int)plan->gateway, "steps_ms", (int)plan->steps_ms,
                   "cause_ms", (int)plan->cause_ms, "engage_ms", (int)plan->engage_ms, "trips", trips_of(why->why));
-    output_json(output, line, 0u);
+    output_json(output, line, 0);
 }
 
 void campaign_why_free(campaign_why_t *why) {

@@ -10,11 +10,11 @@ enum { NAME_SIZE = 40 };
 
 const char *fault_option_names(void) {
     static char names[AGV_FAULT_COUNT * NAME_SIZE];
-    size_t used = 0u;
-    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+    size_t used = 0;
+    for (uint32_t i = 0; i < AGV_FAULT_COUNT; i++) {
         const agv_fault_t fault = (agv_fault_t)i;
         if ((campaign_row(fault) != NULL) && (used < sizeof names)) {
-            used += (size_t)snprintf(&names[used], sizeof names - used, "%s%s", (used > 0u) ? "|" : "",
+            used += (size_t)snprintf(&names[used], sizeof names - used, "%s%s", (used > 0) ? "|" : "",
                                      agv_fault_name(fault));
         }
     }

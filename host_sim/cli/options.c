@@ -41,7 +41,7 @@ static int command_length(const option_syntax_t *syntax) {
 }
 
 const option_t *options_at(const option_syntax_t *syntax, size_t index) {
-    for (size_t g = 0u; g < syntax->group_count; g++) {
+    for (size_t g = 0; g < syntax->group_count; g++) {
         if (index < syntax->groups[g].count) {
             return &syntax->groups[g].options[index];
         }
@@ -53,15 +53,15 @@ const option_t *options_at(const option_syntax_t *syntax, size_t index) {
 /** The only option that begins with what was written, of which at least a letter. @return NULL: none, or several do */
 static const char *abbreviated(const option_syntax_t *syntax, const char *argument, size_t length) {
     const char *only = NULL;
-    size_t found = 0u;
-    for (size_t i = 0u; (length > strlen("--")) && (i < OPTIONS_MAX); i++) {
+    size_t found = 0;
+    for (size_t i = 0; (length > strlen("--")) && (i < OPTIONS_MAX); i++) {
         const option_t *option = options_at(syntax, i);
         if ((option != NULL) && (strncmp(option->name, argument, length) == 0)) {
             only = option->name;
             found++;
         }
     }
-    return (found == 1u) ? only : NULL;
+    return (found == 1) ? only : NULL;
 }
 
 static bool refuse_unknown(const option_syntax_t *syntax, const char *argument, size_t length) {
@@ -71,7 +71,7 @@ static bool refuse_unknown(const option_syntax_t *syntax, const char *argument, 
     }
     char meant[SUGGEST_SIZE];
     suggestion_t suggestion = suggest_begin(argument, length);
-    size_t next = 0u;
+    size_t next = 0;
     for (const option_t *option = options_at(syntax, next); option != NULL; option = options_at(syntax, next)) {
         suggest_offer(&suggestion, option->name, strlen(option->name));
         next++;
@@ -87,7 +87,7 @@ static bool refuse_unknown(const option_syntax_t *syntax, const char *argument, 
 static const option_t *find(parsing_t *parsing) {
     const char *argument = parsing->argv[parsing->at];
     const size_t length = strcspn(argument, "=");
-    for (size_t i = 0u; i < OPTIONS_MAX; i++) {
+    for (size_t i = 0; i < OPTIONS_MAX; i++) {
         const option_t *option = options_at(parsing->syntax, i);
         if (option == NULL) {
             break;
@@ -119,7 +119,7 @@ static bool take_value(const option_t *option, const char *value) {
         return option->each(option->ctx, value);
     }
     if (option->number != NULL) {
-        uint64_t number = 0u;
+        uint64_t number = 0;
         if (!words_decimal(value, option->lowest, option->highest, &number)) {
             return report("%s: '%s' is not a number from %" PRIu64 " to %" PRIu64, option->name, value, option->lowest,
                           option->highest);
@@ -165,7 +165,7 @@ static bool take_option(parsing_t *parsing) {
         return take_value(option, &value[1]);
     }
     const int next = parsing->at + 1;
-    if ((next >= parsing->argc) || (strncmp(parsing->argv[next], "--", 2u) == 0)) {
+    if ((next >= parsing->argc) || (strncmp(parsing->argv[next], "--", 2) == 0)) {
         return report("%s needs a value: %s", option->name, option->value);
     }
     parsing->at = next;
@@ -174,7 +174,7 @@ static bool take_option(parsing_t *parsing) {
 
 /** Whether an option was given. */
 static bool is_given(const parsing_t *parsing, const char *name) {
-    for (size_t i = 0u; i < OPTIONS_MAX; i++) {
+    for (size_t i = 0; i < OPTIONS_MAX; i++) {
         const option_t *option = options_at(parsing->syntax, i);
         if ((option == NULL) || (strcmp(option->name, name) == 0)) {
             return (option != NULL) && parsing->given[i];
@@ -189,8 +189,8 @@ static bool refuse_operand(const parsing_t *parsing, size_t at) {
     if ((syntax->instead != NULL) && !is_given(parsing, syntax->instead)) {
         return report("unexpected argument '%s': did you mean '%s %s'?", argv[at], syntax->instead, argv[at]);
     }
-    if (at > 0u) {
-        return report("unexpected argument '%s' after '%s'; see host_sim %.*s --help", argv[at], argv[at - 1u],
+    if (at > 0) {
+        return report("unexpected argument '%s' after '%s'; see host_sim %.*s --help", argv[at], argv[at - 1],
                       command_length(syntax), syntax->usage);
     }
     return report("unexpected argument '%s'; see host_sim %.*s --help", argv[at], command_length(syntax),
@@ -203,13 +203,13 @@ static bool check_operands(const parsing_t *parsing, size_t operands) {
         return report("%s is missing; see host_sim %.*s --help", syntax->operand, command_length(syntax),
                       syntax->usage);
     }
-    if ((operands > syntax->operands_max) && (syntax->operands_max > 1u)) {
+    if ((operands > syntax->operands_max) && (syntax->operands_max > 1)) {
         return report("%s: more than %zu were given", syntax->operand, syntax->operands_max);
     }
     if (operands > syntax->operands_max) {
         return refuse_operand(parsing, syntax->operands_max);
     }
-    for (size_t i = 0u; i < operands; i++) {
+    for (size_t i = 0; i < operands; i++) {
         if (parsing->argv[i][0] == '\0') {
             return report("%s: the name is empty", syntax->operand);
         }
@@ -220,7 +220,7 @@ static bool check_operands(const parsing_t *parsing, size_t operands) {
 options_result_t options_parse(const option_syntax_t *syntax, int argc, char **argv, size_t *operands) {
     parsing_t parsing = {.syntax = syntax, .argc = argc, .argv = argv};
     bool only_operands = false;
-    *operands = 0u;
+    *operands = 0;
     for (; parsing.at < argc; parsing.at++) {
         char *argument = argv[parsing.at];
         if (only_operands || (argument[0] != '-') || (argument[1] == '\0')) {

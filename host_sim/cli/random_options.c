@@ -14,8 +14,8 @@ void random_options_init(random_options_t *options, option_t rows[RANDOM_OPTIONS
 
 bool random_options_shard(const char *text, uint32_t *shard, uint32_t *shards) {
     char first[8];
-    uint64_t part = 0u;
-    uint64_t parts = 0u;
+    uint64_t part = 0;
+    uint64_t parts = 0;
     const size_t length = strcspn(text, "/");
 
     if ((length >= sizeof first) || (text[length] != '/')) {
@@ -23,7 +23,7 @@ bool random_options_shard(const char *text, uint32_t *shard, uint32_t *shards) {
     }
     memcpy(first, text, length);
     first[length] = '\0';
-    if (!words_decimal(&text[length + 1u], 1u, SHARDS_MAX, &parts) || !words_decimal(first, 1u, parts, &part)) {
+    if (!words_decimal(&text[length + 1], 1, SHARDS_MAX, &parts) || !words_decimal(first, 1, parts, &part)) {
         return report("--shard: '%s' is not I/N with I from 1 to N and N at most %u", text, SHARDS_MAX);
     }
     *shard = (uint32_t)part;
@@ -35,7 +35,7 @@ bool random_options_check(const random_options_t *options, const char *command, 
     if (options->seed == OPTION_NOT_GIVEN) {
         return report("--seed is missing; see host_sim %s --help", command);
     }
-    *shard = 1u;
-    *shards = 1u;
+    *shard = 1;
+    *shards = 1;
     return (options->shard == NULL) || random_options_shard(options->shard, shard, shards);
 }

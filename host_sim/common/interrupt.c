@@ -17,7 +17,7 @@ static bool is_ignored(int signal) {
 
 static void make_set(sigset_t *set) {
     (void)sigemptyset(set);
-    for (size_t i = 0u; i < held_count; i++) {
+    for (size_t i = 0; i < held_count; i++) {
         if ((held[i] != SIGHUP) || !is_ignored(SIGHUP)) { /* nohup */
             (void)sigaddset(set, held[i]);
         }
@@ -33,7 +33,7 @@ void interrupt_hold(void) {
 void interrupt_release(void) {
     sigset_t set;
     make_set(&set);
-    for (size_t i = 0u; i < held_count; i++) {
+    for (size_t i = 0; i < held_count; i++) {
         if (is_ignored(held[i]) && (sigismember(&set, held[i]) == 1)) {
             (void)signal(held[i], SIG_DFL); /* a pending one would be discarded, and half a run look like a whole one */
         }
@@ -46,7 +46,7 @@ bool interrupt_pending(void) {
     (void)sigemptyset(&pending);
     (void)sigpending(&pending);
     bool any = false;
-    for (size_t i = 0u; i < held_count; i++) {
+    for (size_t i = 0; i < held_count; i++) {
         any = any || (sigismember(&pending, held[i]) == 1);
     }
     return any;

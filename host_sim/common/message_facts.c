@@ -17,9 +17,8 @@ static const struct {
 };
 
 message_sender_t message_sender(uint32_t message) {
-    const bool is_of_eps = (message == (uint32_t)AGV_MSG_STEERING_STATUS) ||
-                           (message == (uint32_t)AGV_MSG_EPS_STATUS) ||
-                           (message == (uint32_t)AGV_MSG_STEERING_POSITION);
+    const bool is_of_eps = (message == AGV_MSG_STEERING_STATUS) || (message == AGV_MSG_EPS_STATUS) ||
+                           (message == AGV_MSG_STEERING_POSITION);
     const message_sender_t other = (message < AGV_COMMAND_COUNT) ? MESSAGE_FROM_AI : MESSAGE_FROM_VCU;
     return is_of_eps ? MESSAGE_FROM_EPS : other;
 }
@@ -41,19 +40,19 @@ bool message_has_to_increment(const agv_config_t *config, uint32_t message) {
     const uint16_t choices[] = {[MESSAGE_FROM_AI] = config->ai_counter,
                                 [MESSAGE_FROM_VCU] = config->vcu_counter,
                                 [MESSAGE_FROM_EPS] = config->eps_counter};
-    return choices[message_sender(message)] == (uint16_t)AGV_COUNTER_INCREMENTS;
+    return choices[message_sender(message)] == AGV_COUNTER_INCREMENTS;
 }
 
 /** Whether a counter that has to increment does so: after a wrong step only the second right one counts. */
 static bool increments(message_beat_t *beat, uint8_t step) {
-    if ((step == 0u) || (step > (uint8_t)STEP_MAX)) {
+    if ((step == 0) || (step > STEP_MAX)) {
         beat->steps_needed = STEPS_AFTER_WRONG;
         return false;
     }
-    if (beat->steps_needed > 0u) {
+    if (beat->steps_needed > 0) {
         beat->steps_needed--;
     }
-    return beat->steps_needed == 0u;
+    return beat->steps_needed == 0;
 }
 
 bool message_beats(message_beat_t *beat, const agv_config_t *config, uint32_t message, uint8_t value) {
@@ -64,18 +63,18 @@ bool message_beats(message_beat_t *beat, const agv_config_t *config, uint32_t me
     if (is_first) {
         return true;
     }
-    return message_has_to_increment(config, message) ? increments(beat, step) : (step != 0u);
+    return message_has_to_increment(config, message) ? increments(beat, step) : (step != 0);
 }
 
 const char *message_form(uint32_t flags) {
-    if ((flags & HAL_CAN_ERROR) != 0u) {
+    if ((flags & HAL_CAN_ERROR) != 0) {
         return "error frame";
     }
-    if ((flags & HAL_CAN_REMOTE) != 0u) {
+    if ((flags & HAL_CAN_REMOTE) != 0) {
         return "remote frame";
     }
-    if ((flags & HAL_CAN_FD) != 0u) {
+    if ((flags & HAL_CAN_FD) != 0) {
         return "CAN FD frame";
     }
-    return (flags != 0u) ? "extended frame" : "";
+    return (flags != 0) ? "extended frame" : "";
 }

@@ -10,22 +10,22 @@ typedef const char *name_fn(uint8_t bit);
 
 static const char *text_of(name_fn *name, uint16_t bits, char text[MISSING_TEXT_SIZE]) {
     text[0] = '\0';
-    for (uint8_t bit = 0u; name(bit) != NULL; bit++) {
-        if ((bits & (1u << bit)) != 0u) {
+    for (uint8_t bit = 0; name(bit) != NULL; bit++) {
+        if ((bits & (1u << bit)) != 0) {
             const size_t used = strlen(text);
-            (void)snprintf(&text[used], MISSING_TEXT_SIZE - used, "%s%s", (used > 0u) ? ", " : "", name(bit));
+            (void)snprintf(&text[used], MISSING_TEXT_SIZE - used, "%s%s", (used > 0) ? ", " : "", name(bit));
         }
     }
     return text;
 }
 
 static uint16_t bit_of(name_fn *name, const char *word) {
-    for (uint8_t bit = 0u; name(bit) != NULL; bit++) {
+    for (uint8_t bit = 0; name(bit) != NULL; bit++) {
         if (strcmp(word, name(bit)) == 0) {
             return (uint16_t)(1u << bit);
         }
     }
-    return 0u;
+    return 0;
 }
 
 const char *missing_text(uint16_t missing, char text[MISSING_TEXT_SIZE]) {

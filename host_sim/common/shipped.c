@@ -16,7 +16,7 @@ static const char built[] = HOST_SIM_SCENARIOS_FROM_PROGRAM;
 
 /** The folder of the program, with a slash at the end; "" if it is not known. */
 static void own_folder(char *folder, size_t size) {
-    const ssize_t length = readlink("/proc/self/exe", folder, size - 1u);
+    const ssize_t length = readlink("/proc/self/exe", folder, size - 1);
     folder[(length > 0) ? length : 0] = '\0';
     char *slash = strrchr(folder, '/');
     if (slash != NULL) {
@@ -47,7 +47,7 @@ const char *shipped_shown(char path[SHIPPED_PATH_SIZE]) {
     *strrchr(real, '/') = '\0';
     const size_t length = strlen(here);
     const bool is_below = (strncmp(real, here, length) == 0) && (real[length] == '/');
-    (void)snprintf(path, SHIPPED_PATH_SIZE, "%s", is_below ? &real[length + 1u] : real);
+    (void)snprintf(path, SHIPPED_PATH_SIZE, "%s", is_below ? &real[length + 1] : real);
     return path;
 }
 
@@ -65,8 +65,8 @@ static int compare(const void *a, const void *b) {
 static size_t name_length(const char *file) {
     static const char ending[] = ".yaml";
     const size_t length = strlen(file);
-    const size_t without = (length > strlen(ending)) ? length - strlen(ending) : 0u;
-    return (strcmp(&file[without], ending) == 0) ? without : 0u;
+    const size_t without = (length > strlen(ending)) ? length - strlen(ending) : 0;
+    return (strcmp(&file[without], ending) == 0) ? without : 0;
 }
 
 /** Add the scenarios of a folder. */
@@ -77,7 +77,7 @@ static void add_scenarios_of(names_t *names, const char *path) {
     }
     for (const struct dirent *entry = readdir(folder); entry != NULL; entry = readdir(folder)) {
         const size_t length = name_length(entry->d_name);
-        if ((length > 0u) && (length < (size_t)NAME_SIZE) && (names->count < (size_t)SCENARIOS_MAX)) {
+        if ((length > 0) && (length < NAME_SIZE) && (names->count < SCENARIOS_MAX)) {
             (void)snprintf(names->names[names->count], NAME_SIZE, "%.*s", (int)length, entry->d_name);
             names->count++;
         }
@@ -104,13 +104,13 @@ static void collect_all(names_t *names) {
 const char *shipped_scenario_names(void) {
     static char list[SCENARIOS_MAX * NAME_SIZE];
     static names_t names;
-    size_t used = 0u;
-    names.count = 0u;
+    size_t used = 0;
+    names.count = 0;
     list[0] = '\0';
     collect_all(&names);
     qsort(names.names, names.count, sizeof names.names[0], compare);
-    for (size_t i = 0u; (i < names.count) && (used < sizeof list); i++) {
-        used += (size_t)snprintf(&list[used], sizeof list - used, "%s%s", (i > 0u) ? "|" : "", names.names[i]);
+    for (size_t i = 0; (i < names.count) && (used < sizeof list); i++) {
+        used += (size_t)snprintf(&list[used], sizeof list - used, "%s%s", (i > 0) ? "|" : "", names.names[i]);
     }
     return list;
 }

@@ -42,10 +42,10 @@ void config_class_key(agv_fault_t fault, char key[CONFIG_CLASS_KEY_SIZE]) {
 /** Read a number as YAML writes it: decimal, or hexadecimal with 0x and up to 8 digits. */
 static bool read_number(const char *text, uint64_t *number) {
     if ((text[0] != '0') || (text[1] == '\0')) {
-        return words_decimal(text, 0u, UINT64_MAX, number);
+        return words_decimal(text, 0, UINT64_MAX, number);
     }
     const size_t length = strlen(&text[2]);
-    return (text[1] == 'x') && (length <= (size_t)HEX_DIGITS_MAX) && words_hex(&text[2], length, number);
+    return (text[1] == 'x') && (length <= HEX_DIGITS_MAX) && words_hex(&text[2], length, number);
 }
 
 /** Read a time that is more than a number of milliseconds. */
@@ -76,7 +76,7 @@ static bool read_value(const reading_t *reading, const char *text, const agv_set
 
 static bool take_number(const reading_t *reading, uint16_t setting, const agv_setting_info_t *info) {
     const char *text = yaml_node_plain(reading->value);
-    uint64_t number = 0u;
+    uint64_t number = 0;
     if (text == NULL) {
         return report_key(reading, "write the number without quotes");
     }
@@ -111,7 +111,7 @@ static int take_word(const reading_t *reading, const char *words) {
 }
 
 static bool note_line(const reading_t *reading, size_t *line) {
-    if (*line != 0u) {
+    if (*line != 0) {
         return report_at(reading->lines->path, reading->line, "%s: already set on line %zu", reading->key, *line);
     }
     *line = reading->line;
@@ -153,11 +153,11 @@ static bool report_unknown_key(const reading_t *reading) {
     char keys[AGV_FAULT_COUNT][CONFIG_CLASS_KEY_SIZE];
     char meant[SUGGEST_SIZE];
     suggestion_t suggestion = suggest_begin(reading->key, strlen(reading->key));
-    for (uint16_t setting = 0u; setting < (uint16_t)AGV_SETTING_COUNT; setting++) {
+    for (uint16_t setting = 0; setting < AGV_SETTING_COUNT; setting++) {
         const char *name = agv_setting_info(setting)->name;
         suggest_offer(&suggestion, name, strlen(name));
     }
-    for (uint32_t fault = 0u; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
+    for (uint32_t fault = 0; fault < AGV_FAULT_COUNT; fault++) {
         config_class_key((agv_fault_t)fault, keys[fault]);
         suggest_offer(&suggestion, keys[fault], strlen(keys[fault]));
     }
@@ -166,12 +166,12 @@ static bool report_unknown_key(const reading_t *reading) {
 }
 
 static bool take_pair(const reading_t *reading) {
-    for (uint16_t setting = 0u; setting < (uint16_t)AGV_SETTING_COUNT; setting++) {
+    for (uint16_t setting = 0; setting < AGV_SETTING_COUNT; setting++) {
         if (strcmp(agv_setting_info(setting)->name, reading->key) == 0) {
             return take_setting(reading, setting);
         }
     }
-    for (uint32_t fault = 0u; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
+    for (uint32_t fault = 0; fault < AGV_FAULT_COUNT; fault++) {
         char key[CONFIG_CLASS_KEY_SIZE];
         config_class_key((agv_fault_t)fault, key);
         if (strcmp(key, reading->key) == 0) {
@@ -224,7 +224,7 @@ bool config_file_load(const char *path, agv_config_t *config, config_lines_t *li
 }
 
 static bool report_setting(const config_lines_t *lines, size_t line, const char *key, const char *reason) {
-    if ((lines->path == NULL) || (line == 0u)) {
+    if ((lines->path == NULL) || (line == 0)) {
         return report("%s: %s", key, reason);
     }
     return report_at(lines->path, line, "%s: %s", key, reason);
@@ -234,7 +234,7 @@ static bool report_setting(const config_lines_t *lines, size_t line, const char 
 static uint16_t other_of(const agv_ids_t *ids, uint16_t id, uint16_t blamed) {
     const bool is_status = blamed == (uint16_t)AGV_SETTING_status_frame_id;
     uint16_t other = (uint16_t)AGV_SETTING_status_frame_id;
-    for (uint16_t i = 0u; i < (uint16_t)AGV_MSG_COUNT; i++) {
+    for (uint16_t i = 0; i < AGV_MSG_COUNT; i++) {
         const uint16_t setting = (uint16_t)((uint16_t)AGV_SETTING_ID + i);
         const bool is_of_a_set =
             (agv_message_id(i, AGV_ID_SET_HEADING) == id) || (agv_message_id(i, AGV_ID_SET_TABLE) == id);
@@ -251,7 +251,7 @@ static bool blame_twice(const agv_config_t *config, const config_lines_t *lines,
     const bool is_status = setting == (uint16_t)AGV_SETTING_status_frame_id;
     const uint16_t id = is_status ? config->status_frame_id : ids.of[setting - (uint16_t)AGV_SETTING_ID];
     uint16_t blamed = setting;
-    for (uint16_t i = 0u; (lines->settings[blamed] == 0u) && (i < (uint16_t)AGV_MSG_COUNT); i++) {
+    for (uint16_t i = 0; (lines->settings[blamed] == 0) && (i < AGV_MSG_COUNT); i++) {
         blamed = (ids.of[i] == id) ? (uint16_t)((uint16_t)AGV_SETTING_ID + i) : blamed;
     }
     const uint16_t other = other_of(&ids, id, blamed);
@@ -266,7 +266,7 @@ static const char NEEDS_GATEWAY[] = "has no effect on a shared bus; this value n
 static bool blame_press(const config_lines_t *lines) {
     const size_t longest = lines->settings[AGV_SETTING_reset_hold_max_ms];
     const size_t shortest = lines->settings[AGV_SETTING_reset_hold_ms];
-    if ((longest == 0u) && (shortest != 0u)) {
+    if ((longest == 0) && (shortest != 0)) {
         return report_setting(lines, shortest, "reset_hold_ms", "must be below reset_hold_max_ms");
     }
     return report_setting(lines, longest, "reset_hold_max_ms", "must be above reset_hold_ms");
@@ -274,7 +274,7 @@ static bool blame_press(const config_lines_t *lines) {
 
 /** Why a fault must keep its default class. */
 static const char *class_reason(agv_fault_t fault) {
-    if ((agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) == 0u) {
+    if ((agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) == 0) {
         return NEEDS_GATEWAY;
     }
     return (agv_fault_default_class(fault) == AGV_CLASS_TRIP) ? "this fault must stay a trip"
@@ -285,7 +285,7 @@ bool config_check(const agv_config_t *config, const config_lines_t *lines) {
     const agv_config_verdict_t verdict = agv_config_check(config);
     const agv_setting_info_t *info = agv_setting_info(verdict.setting);
     const char *name = (info != NULL) ? info->name : "?";
-    size_t line = (info != NULL) ? lines->settings[verdict.setting] : 0u;
+    size_t line = (info != NULL) ? lines->settings[verdict.setting] : 0;
     char key[CONFIG_CLASS_KEY_SIZE];
     switch (verdict.problem) {
     case AGV_CONFIG_OK:

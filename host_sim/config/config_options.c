@@ -31,7 +31,7 @@ bool config_options_make(const config_options_t *options, agv_config_t *config) 
     }
     if (options->topology != NOT_GIVEN) {
         config->topology = (uint16_t)options->topology;
-    } else if (options->has_ai_side && (lines.settings[AGV_SETTING_topology] == 0u)) {
+    } else if (options->has_ai_side && (lines.settings[AGV_SETTING_topology] == 0)) {
         config->topology = AGV_TOPOLOGY_GATEWAY;
     }
     if (options->id_set != NOT_GIVEN) {

@@ -19,8 +19,8 @@ enum { DESCRIPTION_SIZE = 400 };
 static json_t *words_of(const agv_setting_info_t *info) {
     json_t *list = json_array();
     const char *word = NULL;
-    size_t length = words_at(info->words, 0u, &word);
-    for (size_t i = 1u; length > 0u; i++) {
+    size_t length = words_at(info->words, 0, &word);
+    for (size_t i = 1; length > 0; i++) {
         (void)json_array_append_new(list, json_stringn(word, length));
         length = words_at(info->words, i, &word);
     }
@@ -64,7 +64,7 @@ static json_t *setting_of(const agv_setting_info_t *info) {
 
 /** A fault whose class is fixed has that one, but for a scenario with `config_unchecked`. */
 static json_t *class_of(agv_fault_t fault, bool may_be_unchecked) {
-    const bool is_fixed = !may_be_unchecked && ((agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) != 0u);
+    const bool is_fixed = !may_be_unchecked && ((agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) != 0);
     const char *preset = agv_class_name(agv_fault_default_class(fault));
     json_t *schema = is_fixed ? json_pack("{s:[s]}", "enum", preset) : json_pack("{s:[s, s]}", "enum", "trip", "warn");
     (void)json_object_set_new(schema, "default", json_string(preset));
@@ -77,13 +77,13 @@ static bool is_of_top_level(const char *name) {
 
 json_t *config_schema(bool of_scenario) {
     json_t *properties = json_object();
-    for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
+    for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
         const agv_setting_info_t *info = agv_setting_info(i);
         if (!of_scenario || !is_of_top_level(info->name)) {
             (void)json_object_set_new(properties, info->name, setting_of(info));
         }
     }
-    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+    for (uint32_t i = 0; i < AGV_FAULT_COUNT; i++) {
         char key[CONFIG_CLASS_KEY_SIZE];
         config_class_key((agv_fault_t)i, key);
         (void)json_object_set_new(properties, key, class_of((agv_fault_t)i, of_scenario));

@@ -10,7 +10,7 @@
 #include "text/words.h"
 
 bool config_is_id(const agv_setting_info_t *info) {
-    return (strncmp(info->name, "id_", 3u) == 0 && (info->words == NULL)) ||
+    return (strncmp(info->name, "id_", 3) == 0 && (info->words == NULL)) ||
            (strcmp(info->name, "status_frame_id") == 0);
 }
 
@@ -36,11 +36,11 @@ static const char *default_word(agv_fault_t fault) {
 
 /** Whether the class of a fault may be chosen at all. */
 static bool may_be_chosen(agv_fault_t fault) {
-    return (agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) == 0u;
+    return (agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) == 0;
 }
 
 static bool is_gateway_only(agv_fault_t fault) {
-    return (agv_fault_flags(fault) & AGV_FAULT_FLAG_GATEWAY) != 0u;
+    return (agv_fault_flags(fault) & AGV_FAULT_FLAG_GATEWAY) != 0;
 }
 
 /** Which values weaken the supervision. */
@@ -50,7 +50,7 @@ static void print_weakens(const agv_setting_info_t *info) {
         const char *text;
     } values[] = {{"ABOVE", "a higher value"}, {"BELOW", "a lower value"}, {"ZERO", "0"}};
     const char *text = (strcmp(info->weakens, "CHOSEN") == 0) ? strchr(info->words, '|') + 1 : NULL;
-    for (size_t i = 0u; i < sizeof values / sizeof values[0]; i++) {
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
         if (strcmp(info->weakens, values[i].weakens) == 0) {
             text = values[i].text;
         }
@@ -64,7 +64,7 @@ void config_print_yaml(const agv_config_t *config) {
     (void)printf("# Configuration of the supervisor: every setting with its meaning, range and default.\n"
                  "# Checksum: %08" PRIX32 "\n",
                  agv_config_checksum(config));
-    for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
+    for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
         const agv_setting_info_t *info = agv_setting_info(i);
         char preset[CONFIG_VALUE_SIZE];
         char value[CONFIG_VALUE_SIZE];
@@ -86,7 +86,7 @@ void config_print_yaml(const agv_config_t *config) {
         (void)printf("%s: %s\n", info->name, value);
     }
     (void)printf("\n# Class of each fault: trip|warn. A mandatory class cannot be changed.\n");
-    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+    for (uint32_t i = 0; i < AGV_FAULT_COUNT; i++) {
         const agv_fault_t fault = (agv_fault_t)i;
         char key[CONFIG_CLASS_KEY_SIZE];
         config_class_key(fault, key);
@@ -99,7 +99,7 @@ void config_print_kconfig(const agv_config_t *config) {
     (void)printf("# Configuration of the supervisor, for the firmware.\n"
                  "# Checksum: %08" PRIX32 "\n",
                  agv_config_checksum(config));
-    for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
+    for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
         const agv_setting_info_t *info = agv_setting_info(i);
         char value[CONFIG_VALUE_SIZE];
         config_value_text(info, agv_config_get(config, i), value);
@@ -113,7 +113,7 @@ void config_print_kconfig(const agv_config_t *config) {
             (void)printf("=y\n");
         }
     }
-    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+    for (uint32_t i = 0; i < AGV_FAULT_COUNT; i++) {
         const agv_fault_t fault = (agv_fault_t)i;
         if (may_be_chosen(fault)) {
             (void)printf("CONFIG_AGV_CLASS_%s_", agv_fault_name(fault));
@@ -132,7 +132,7 @@ static void print_deviation(bool *any, const char *key, const char *value, const
 
 void config_note_deviations(const agv_config_t *config) {
     bool any = false;
-    for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
+    for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
         const agv_setting_info_t *info = agv_setting_info(i);
         if (agv_config_get(config, i) != info->preset) {
             char preset[CONFIG_VALUE_SIZE];
@@ -142,7 +142,7 @@ void config_note_deviations(const agv_config_t *config) {
             print_deviation(&any, info->name, value, preset, agv_config_weakens(config, i));
         }
     }
-    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+    for (uint32_t i = 0; i < AGV_FAULT_COUNT; i++) {
         const agv_fault_t fault = (agv_fault_t)i;
         if (agv_config_is_trip(config, fault) != (agv_fault_default_class(fault) == AGV_CLASS_TRIP)) {
             char key[CONFIG_CLASS_KEY_SIZE];

@@ -8,39 +8,39 @@
 #include "text/units.h"
 
 enum { PATH_SIZE = 4096, BITS = 64, AFTER_MS = 500 };
-_Static_assert((unsigned)AGV_SETTING_COUNT <= 64u * (unsigned)HUNT_SETTING_WORDS, "a setting has no bit");
-_Static_assert(HUNT_ATTACKS_MAX <= 64u * (unsigned)HUNT_ATTACK_WORDS, "an attack has no bit");
-_Static_assert((unsigned)AGV_FAULT_COUNT <= 64u * (unsigned)HUNT_CLASS_WORDS, "a fault has no bit");
+_Static_assert((unsigned)AGV_SETTING_COUNT <= 64 * (unsigned)HUNT_SETTING_WORDS, "a setting has no bit");
+_Static_assert(HUNT_ATTACKS_MAX <= 64 * (unsigned)HUNT_ATTACK_WORDS, "an attack has no bit");
+_Static_assert((unsigned)AGV_FAULT_COUNT <= 64 * (unsigned)HUNT_CLASS_WORDS, "a fault has no bit");
 
 static hunt_signature_t signature_of(const hunt_program_t *program, const hazard_t *hazard) {
     hunt_signature_t signature;
 
     memset(&signature, 0, sizeof signature);
     signature.kind = (uint32_t)hazard->kind;
-    signature.gateway = program->gateway ? 1u : 0u;
+    signature.gateway = program->gateway ? 1 : 0;
     (void)snprintf(signature.cause, sizeof signature.cause, "%s", hazard->cause);
-    for (uint32_t i = 0u; i < program->action_count; i++) {
+    for (uint32_t i = 0; i < program->action_count; i++) {
         const hunt_action_t *action = &program->actions[i];
         const uint64_t bit = UINT64_C(1) << (action->attack % BITS);
         const uint32_t word = action->attack / BITS;
         const bool is_pattern =
-            ((HUNT_ATTACKS[action->attack].flags & HUNT_PATTERN) != 0u) && (action->parameters[HUNT_PATTERN_BAD] != 0u);
+            ((HUNT_ATTACKS[action->attack].flags & HUNT_PATTERN) != 0) && (action->parameters[HUNT_PATTERN_BAD] != 0);
         signature.attacks[word] |= bit;
-        signature.patterns[word] |= is_pattern ? bit : 0u;
+        signature.patterns[word] |= is_pattern ? bit : 0;
     }
-    for (uint32_t i = 0u; i < program->setting_count; i++) {
+    for (uint32_t i = 0; i < program->setting_count; i++) {
         const uint16_t setting = program->settings[i].setting;
         signature.settings[setting / BITS] |= UINT64_C(1) << (setting % BITS);
     }
-    for (uint32_t i = 0u; i < program->class_count; i++) {
+    for (uint32_t i = 0; i < program->class_count; i++) {
         signature.classes[program->classes[i] / BITS] |= UINT64_C(1) << (program->classes[i] % BITS);
     }
     return signature;
 }
 
 static bool are_part_of(const uint64_t *known, const uint64_t *bits, unsigned words) {
-    for (unsigned i = 0u; i < words; i++) {
-        if ((known[i] & ~bits[i]) != 0u) {
+    for (unsigned i = 0; i < words; i++) {
+        if ((known[i] & ~bits[i]) != 0) {
             return false;
         }
     }
@@ -58,7 +58,7 @@ static bool is_part_of(const hunt_signature_t *known, const hunt_signature_t *si
 }
 
 static hunt_signature_t *find(hunt_found_t *found, const hunt_signature_t *signature) {
-    for (uint32_t i = 0u; i < found->count; i++) {
+    for (uint32_t i = 0; i < found->count; i++) {
         if (is_part_of(&found->items[i], signature)) {
             return &found->items[i];
         }
@@ -78,25 +78,25 @@ static bool keep_if_same(hunt_play_t *play, hunt_program_t *program, const hunt_
 
 /** Drop actions, settings and classes one by one, and make the vehicle the common one. */
 static void minimise(hunt_play_t *play, hunt_program_t *program, hazard_kind_t kind, const char *cause) {
-    for (uint32_t i = program->action_count; (i > 0u) && (program->action_count > 1u); i--) {
+    for (uint32_t i = program->action_count; (i > 0) && (program->action_count > 1); i--) {
         hunt_program_t changed = *program;
-        memmove(&changed.actions[i - 1u], &changed.actions[i], (changed.action_count - i) * sizeof changed.actions[0]);
+        memmove(&changed.actions[i - 1], &changed.actions[i], (changed.action_count - i) * sizeof changed.actions[0]);
         changed.action_count--;
         (void)keep_if_same(play, program, &changed, kind, cause);
     }
-    for (uint32_t i = program->setting_count; i > 0u; i--) {
+    for (uint32_t i = program->setting_count; i > 0; i--) {
         hunt_program_t changed = *program;
         changed.setting_count--;
-        changed.settings[i - 1u] = changed.settings[changed.setting_count];
+        changed.settings[i - 1] = changed.settings[changed.setting_count];
         (void)keep_if_same(play, program, &changed, kind, cause);
     }
-    if (program->class_count > 0u) {
+    if (program->class_count > 0) {
         hunt_program_t changed = *program;
-        changed.class_count = 0u;
+        changed.class_count = 0;
         (void)keep_if_same(play, program, &changed, kind, cause);
     }
     hunt_program_t plain = *program;
-    plain.tick_phase_us = 0u;
+    plain.tick_phase_us = 0;
     plain.obeys_short = false;
     plain.park_guard = true;
     (void)keep_if_same(play, program, &plain, kind, cause);
@@ -125,7 +125,7 @@ static void cut_end(hunt_play_t *play, hunt_program_t *program, hazard_kind_t ki
     hunt_program_t changed = *program;
 
     changed.duration_ms = (uint32_t)play->hazard.at_ms + AFTER_MS;
-    for (uint32_t i = 0u; i < changed.action_count; i++) {
+    for (uint32_t i = 0; i < changed.action_count; i++) {
         hunt_action_t *action = &changed.actions[i];
         if (action->begin_ms > changed.duration_ms) {
             return;
@@ -139,7 +139,7 @@ static void cut_end(hunt_play_t *play, hunt_program_t *program, hazard_kind_t ki
 
 static bool write_file(hunt_play_t *play, const hunt_program_t *program, const hunt_place_t *place) {
     char path[PATH_SIZE];
-    text_t line = {.used = 0u};
+    text_t line = {.used = 0};
     const int length =
         snprintf(path, sizeof path, "%s/hunt-%" PRIu64 "-%" PRIu64 ".yaml", place->folder, place->seed, place->run);
 
@@ -161,7 +161,7 @@ static bool write_file(hunt_play_t *play, const hunt_program_t *program, const h
 static bool is_known(hunt_found_t *found, const hunt_signature_t *signature) {
     hunt_signature_t *known = find(found, signature);
 
-    if ((known == NULL) && (found->count == (uint32_t)HUNT_FOUND_MAX)) {
+    if ((known == NULL) && (found->count == HUNT_FOUND_MAX)) {
         known = &found->items[0];
     }
     if (known != NULL) {

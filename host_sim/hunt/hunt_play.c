@@ -15,11 +15,11 @@ static void note_feature(hunt_play_t *play, uint32_t kind, uint32_t a, uint32_t 
     const uint32_t parts[] = {kind, a, b, c};
     uint32_t hash = HASH_START;
 
-    for (size_t i = 0u; i < sizeof parts / sizeof parts[0]; i++) {
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
         hash = (hash * HASH_FACTOR) ^ (parts[i] * 0x9E3779B1u);
     }
-    hash = (hash ^ (hash >> 16u)) % HUNT_FEATURES;
-    play->features[hash / 8u] |= (uint8_t)(1u << (hash % 8u));
+    hash = (hash ^ (hash >> 16)) % HUNT_FEATURES;
+    play->features[hash / 8] |= (uint8_t)(1u << (hash % 8));
 }
 
 /** What the supervisor reports guides the search. It decides nothing. */
@@ -32,32 +32,32 @@ static void on_event(void *ctx, const session_event_t *event) {
         return;
     }
     scenario_testbed_view(&play->testbed, &view);
-    const uint32_t closed = view.output_closed ? 1u : 0u;
-    if (recorded->kind == (uint8_t)AGV_EVENT_STATE) {
+    const uint32_t closed = view.output_closed ? 1 : 0;
+    if (recorded->kind == AGV_EVENT_STATE) {
         note_feature(play, OF_STATE, recorded->a, recorded->b, recorded->c);
-        note_feature(play, OF_SPEED, recorded->b, (uint32_t)abs(view.vehicle.speed_mm_s) / 500u, closed);
-    } else if (recorded->kind == (uint8_t)AGV_EVENT_FAULT) {
-        note_feature(play, OF_FAULT, recorded->a, recorded->c, closed + (view.vehicle.autopilot ? 2u : 0u));
+        note_feature(play, OF_SPEED, recorded->b, (uint32_t)abs(view.vehicle.speed_mm_s) / 500, closed);
+    } else if (recorded->kind == AGV_EVENT_FAULT) {
+        note_feature(play, OF_FAULT, recorded->a, recorded->c, closed + (view.vehicle.autopilot ? 2 : 0));
     }
 }
 
 static void note_closeness(hunt_play_t *play) {
-    for (uint32_t r = 0u; r < (uint32_t)HAZARD_ROWS_MAX; r++) {
-        for (uint32_t level = 1u; level <= play->hazard.closeness[r]; level++) {
-            note_feature(play, OF_CLOSENESS, r, level, 0u);
+    for (uint32_t r = 0; r < HAZARD_ROWS_MAX; r++) {
+        for (uint32_t level = 1; level <= play->hazard.closeness[r]; level++) {
+            note_feature(play, OF_CLOSENESS, r, level, 0);
         }
     }
 }
 
 /** The time of the last step; repeated steps count once, except presses of a button. */
 static uint32_t last_step_ms(const scenario_t *scenario) {
-    uint32_t last_ms = 0u;
+    uint32_t last_ms = 0;
 
-    for (size_t i = 0u; i < scenario->step_count; i++) {
+    for (size_t i = 0; i < scenario->step_count; i++) {
         const scenario_step_t *step = &scenario->steps[i];
         const bool presses =
             step->of_vehicle ? (step->vehicle.what == VEHICLE_DO_BUTTON) : (step->supervisor.what == SCENARIO_BUTTON);
-        const uint32_t until_ms = (presses && (step->again_every_ms != 0u)) ? step->again_until_ms : step->at_ms;
+        const uint32_t until_ms = (presses && (step->again_every_ms != 0)) ? step->again_until_ms : step->at_ms;
         last_ms = (until_ms > last_ms) ? until_ms : last_ms;
     }
     return last_ms;
@@ -98,7 +98,7 @@ static void run(hunt_play_t *play) {
                                  .ctx = play};
 
     play->last_step_ms = last_step_ms(&play->scenario);
-    play->quiet_ms = 0u;
+    play->quiet_ms = 0;
     scenario_testbed_start(&play->testbed);
     scenario_play(&play->testbed, &run);
 }

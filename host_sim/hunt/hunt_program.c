@@ -12,10 +12,10 @@ enum { THROTTLE_MIN_PCT = 10, THROTTLE_MAX_PCT = 100, STEER_MAX_DEG = 90, TICK_S
 void hunt_program_config(const hunt_program_t *program, agv_config_t *config) {
     agv_config_defaults(config);
     config->topology = program->gateway ? AGV_TOPOLOGY_GATEWAY : AGV_TOPOLOGY_SHARED;
-    for (uint32_t i = 0u; i < program->setting_count; i++) {
+    for (uint32_t i = 0; i < program->setting_count; i++) {
         (void)agv_config_set(config, program->settings[i].setting, program->settings[i].value);
     }
-    for (uint32_t i = 0u; i < program->class_count; i++) {
+    for (uint32_t i = 0; i < program->class_count; i++) {
         const uint32_t fault = program->classes[i];
         agv_fault_set_put(&config->trips, fault, !agv_fault_is_in(&config->trips, fault));
     }
@@ -30,48 +30,48 @@ static bool is_legal(const hunt_program_t *program) {
 
 /** What a supervisor would refuse is taken back. */
 static void drop_refused_settings(hunt_program_t *program) {
-    while ((program->setting_count > 0u) && !is_legal(program)) {
+    while ((program->setting_count > 0) && !is_legal(program)) {
         program->setting_count--;
     }
     if (!is_legal(program)) {
-        program->class_count = 0u;
+        program->class_count = 0;
     }
 }
 
 static void draw_vehicle(hunt_program_t *program, uint64_t *state) {
-    program->gateway = prng_toss(state, 2u);
-    program->park_guard = !prng_toss(state, 3u);
-    program->rolls = prng_toss(state, 6u);
-    program->obeys_short = prng_toss(state, 4u);
-    program->tick_phase_us = prng_toss(state, 8u) ? (uint16_t)prng_draw(state, 1u, TICK_SPAN_US) : 0u;
-    program->steering_rate_ddeg_s = prng_toss(state, 6u) ? SLOW_DDEG_S : RATE_DDEG_S;
+    program->gateway = prng_toss(state, 2);
+    program->park_guard = !prng_toss(state, 3);
+    program->rolls = prng_toss(state, 6);
+    program->obeys_short = prng_toss(state, 4);
+    program->tick_phase_us = prng_toss(state, 8) ? (uint16_t)prng_draw(state, 1, TICK_SPAN_US) : 0;
+    program->steering_rate_ddeg_s = prng_toss(state, 6) ? SLOW_DDEG_S : RATE_DDEG_S;
     program->throttle_pct = prng_draw(state, THROTTLE_MIN_PCT, THROTTLE_MAX_PCT);
-    program->steer_deg = (int32_t)prng_draw(state, 0u, 2u * STEER_MAX_DEG) - STEER_MAX_DEG;
-    program->duration_ms = prng_toss(state, 3u) ? prng_draw(state, SHORT_MAX_MS, LONG_MAX_MS)
-                                                : prng_draw(state, SHORT_MIN_MS, SHORT_MAX_MS);
+    program->steer_deg = (int32_t)prng_draw(state, 0, 2 * STEER_MAX_DEG) - STEER_MAX_DEG;
+    program->duration_ms = prng_toss(state, 3) ? prng_draw(state, SHORT_MAX_MS, LONG_MAX_MS)
+                                               : prng_draw(state, SHORT_MIN_MS, SHORT_MAX_MS);
 }
 
 void hunt_program_make(hunt_program_t *program, uint64_t *state) {
     memset(program, 0, sizeof *program);
     draw_vehicle(program, state);
-    for (uint32_t left = prng_toss(state, 2u) ? prng_draw(state, 1u, 3u) : 0u; left > 0u; left--) {
+    for (uint32_t left = prng_toss(state, 2) ? prng_draw(state, 1, 3) : 0; left > 0; left--) {
         hunt_add_setting(program, state);
     }
-    if (prng_toss(state, 4u)) {
+    if (prng_toss(state, 4)) {
         hunt_add_class(program, state);
     }
-    for (uint32_t left = prng_draw(state, 1u, 4u); left > 0u; left--) {
+    for (uint32_t left = prng_draw(state, 1, 4); left > 0; left--) {
         hunt_add_action(program, state);
     }
-    if (prng_toss(state, 3u)) {
+    if (prng_toss(state, 3)) {
         hunt_add_reset(program, state);
     }
     drop_refused_settings(program);
 }
 
 static void remove_action(hunt_program_t *program, uint64_t *state) {
-    if (program->action_count > 1u) {
-        const uint32_t i = prng_draw(state, 0u, program->action_count - 1u);
+    if (program->action_count > 1) {
+        const uint32_t i = prng_draw(state, 0, program->action_count - 1);
         program->action_count--;
         program->actions[i] = program->actions[program->action_count];
     }
@@ -80,16 +80,16 @@ static void remove_action(hunt_program_t *program, uint64_t *state) {
 agv_message_t hunt_action_message(const hunt_action_t *action) {
     const hunt_attack_t *attack = &HUNT_ATTACKS[action->attack];
 
-    if ((attack->flags & HUNT_MESSAGE) != 0u) {
+    if ((attack->flags & HUNT_MESSAGE) != 0) {
         return (agv_message_t)action->parameters[0];
     }
-    return ((attack->flags & HUNT_VALUE) != 0u) ? attack->message : AGV_MSG_NONE;
+    return ((attack->flags & HUNT_VALUE) != 0) ? attack->message : AGV_MSG_NONE;
 }
 
 /** Another parameter, or other times. */
 static void change_action(hunt_program_t *program, uint64_t *state) {
-    hunt_action_t *action = &program->actions[prng_draw(state, 0u, program->action_count - 1u)];
-    const uint32_t i = prng_draw(state, 0u, HUNT_PARAMETERS);
+    hunt_action_t *action = &program->actions[prng_draw(state, 0, program->action_count - 1)];
+    const uint32_t i = prng_draw(state, 0, HUNT_PARAMETERS);
 
     if (i < HUNT_PARAMETERS) {
         action->parameters[i] = hunt_draw_parameter(&HUNT_ATTACKS[action->attack], i, state);
@@ -100,33 +100,33 @@ static void change_action(hunt_program_t *program, uint64_t *state) {
 
 /** One of another program, where it makes sense. */
 static void take_action(hunt_program_t *program, const hunt_action_t *given) {
-    const bool fits = ((HUNT_ATTACKS[given->attack].flags & HUNT_GATEWAY) == 0u) || program->gateway;
+    const bool fits = ((HUNT_ATTACKS[given->attack].flags & HUNT_GATEWAY) == 0) || program->gateway;
 
-    if (fits && (program->action_count < (uint32_t)HUNT_ACTIONS_MAX)) {
+    if (fits && (program->action_count < HUNT_ACTIONS_MAX)) {
         program->actions[program->action_count] = *given;
         program->action_count++;
     }
 }
 
 static void change_once(hunt_program_t *program, const hunt_program_t *other, uint64_t *state) {
-    const hunt_action_t *given = &other->actions[prng_draw(state, 0u, other->action_count - 1u)];
+    const hunt_action_t *given = &other->actions[prng_draw(state, 0, other->action_count - 1)];
 
-    switch (prng_draw(state, 0u, 8u)) {
-    case 0u:
-    case 1u:
+    switch (prng_draw(state, 0, 8)) {
+    case 0:
+    case 1:
         hunt_add_action(program, state);
         break;
-    case 2u:
+    case 2:
         remove_action(program, state);
         break;
-    case 3u:
+    case 3:
         take_action(program, given);
         break;
-    case 4u:
+    case 4:
         hunt_add_setting(program, state);
         break;
-    case 5u:
-        if (prng_toss(state, 2u)) {
+    case 5:
+        if (prng_toss(state, 2)) {
             hunt_add_class(program, state);
         } else {
             hunt_add_reset(program, state);
@@ -139,10 +139,10 @@ static void change_once(hunt_program_t *program, const hunt_program_t *other, ui
 }
 
 void hunt_program_mutate(hunt_program_t *program, const hunt_program_t *other, uint64_t *state) {
-    for (uint32_t left = prng_draw(state, 1u, 3u); left > 0u; left--) {
+    for (uint32_t left = prng_draw(state, 1, 3); left > 0; left--) {
         change_once(program, other, state);
     }
-    for (uint32_t i = 0u; i < program->action_count; i++) {
+    for (uint32_t i = 0; i < program->action_count; i++) {
         hunt_action_t *action = &program->actions[i];
         action->end_ms = (action->end_ms < program->duration_ms) ? action->end_ms : program->duration_ms;
     }

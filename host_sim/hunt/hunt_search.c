@@ -37,7 +37,7 @@ typedef struct {
 typedef enum { GOES_ON, OVER, INTERRUPTED, FAILED } went_t;
 
 void hunt_list_hazards(void) {
-    for (int kind = (int)HAZARD_NONE + 1; kind < (int)HAZARD_KINDS; kind++) {
+    for (int kind = (int)HAZARD_NONE + 1; kind < HAZARD_KINDS; kind++) {
         const hazard_info_t *info = hazard_info((hazard_kind_t)kind);
         (void)printf("%s  %s\n    safe: %s\n", info->name, info->meaning, info->safe);
     }
@@ -66,32 +66,32 @@ static void begin_counting(hunt_t *hunt) {
 static bool is_new(hunt_t *hunt) {
     bool new = false;
 
-    for (size_t i = 0u; i < HUNT_FEATURE_BYTES; i++) {
+    for (size_t i = 0; i < HUNT_FEATURE_BYTES; i++) {
         const uint8_t more = (uint8_t)(hunt->play.features[i] & (uint8_t)~hunt->seen[i]);
-        new = new || (more != 0u);
+        new = new || (more != 0);
         hunt->seen[i] |= more;
     }
     return new;
 }
 
 static void draw_program(hunt_t *hunt, hunt_program_t *program, uint64_t *random) {
-    if ((hunt->corpus_count == 0u) || (prng_draw(random, 1u, PERCENT) <= (uint32_t)RANDOM_PERCENT)) {
+    if ((hunt->corpus_count == 0) || (prng_draw(random, 1, PERCENT) <= RANDOM_PERCENT)) {
         hunt_program_make(program, random);
         return;
     }
-    *program = hunt->corpus[prng_draw(random, 0u, hunt->corpus_count - 1u)];
-    hunt_program_mutate(program, &hunt->corpus[prng_draw(random, 0u, hunt->corpus_count - 1u)], random);
+    *program = hunt->corpus[prng_draw(random, 0, hunt->corpus_count - 1)];
+    hunt_program_mutate(program, &hunt->corpus[prng_draw(random, 0, hunt->corpus_count - 1)], random);
 }
 
 static void add_to_corpus(hunt_t *hunt, const hunt_program_t *program, uint64_t *random) {
     if (!is_new(hunt)) {
         return;
     }
-    if (hunt->corpus_count < (uint32_t)CORPUS_MAX) {
+    if (hunt->corpus_count < CORPUS_MAX) {
         hunt->corpus[hunt->corpus_count] = *program;
         hunt->corpus_count++;
     } else {
-        hunt->corpus[prng_draw(random, 0u, CORPUS_MAX - 1u)] = *program;
+        hunt->corpus[prng_draw(random, 0, CORPUS_MAX - 1)] = *program;
     }
 }
 
@@ -136,8 +136,8 @@ static went_t run_piece(hunt_t *hunt, uint64_t piece) {
 
     random = prng_next(&random) ^ piece;
     memset(hunt->seen, 0, sizeof hunt->seen);
-    hunt->corpus_count = 0u;
-    for (uint64_t i = 0u; i < HUNT_PIECE_RUNS; i++) {
+    hunt->corpus_count = 0;
+    for (uint64_t i = 0; i < HUNT_PIECE_RUNS; i++) {
         if (first + i >= hunt->request->runs) {
             return OVER;
         }
@@ -145,7 +145,7 @@ static went_t run_piece(hunt_t *hunt, uint64_t piece) {
             return FAILED;
         }
         show_progress(hunt);
-        if ((i % LOOK_EVERY) == 0u) {
+        if ((i % LOOK_EVERY) == 0) {
             if (interrupt_pending()) {
                 return INTERRUPTED;
             }
@@ -159,7 +159,7 @@ static went_t run_piece(hunt_t *hunt, uint64_t piece) {
 
 /** The piece that is next, by its number. */
 static uint64_t next_piece(const hunt_t *hunt) {
-    return (hunt->state.pieces * hunt->request->shards) + hunt->request->shard - 1u;
+    return (hunt->state.pieces * hunt->request->shards) + hunt->request->shard - 1;
 }
 
 static went_t run_all(hunt_t *hunt) {
@@ -183,7 +183,7 @@ static went_t run_all(hunt_t *hunt) {
 static uint64_t total_of(const hunt_request_t *request) {
     const uint64_t total =
         (request->minutes != UINT64_MAX) ? request->minutes * (MS_PER_MIN / MS_PER_S) : request->runs / request->shards;
-    return (total > 0u) ? total : 1u;
+    return (total > 0) ? total : 1;
 }
 
 /** What the checkpoint has is counted. */
@@ -196,7 +196,7 @@ static status_t conclude(const hunt_t *hunt) {
                  hunt->runs, words_plural(hunt->runs), hunt->virtual_ms / MS_PER_S, spent_ms(hunt) / MS_PER_S,
                  found->runs, words_plural(found->runs), found->count);
     (void)fflush(stdout); /* also when a signal that came ends the program */
-    return (found->count == 0u) ? STATUS_OK : STATUS_UNMET;
+    return (found->count == 0) ? STATUS_OK : STATUS_UNMET;
 }
 
 /** A checkpoint is whole pieces: the runs after the last one are done once more. */
@@ -204,7 +204,7 @@ static void note_interrupted(const hunt_t *hunt) {
     const char *plural = words_plural(hunt->runs);
     if (hunt->request->checkpoint == NULL) {
         note("interrupted after %" PRIu64 " run%s", hunt->runs, plural);
-    } else if (hunt->state.pieces == 0u) {
+    } else if (hunt->state.pieces == 0) {
         note("interrupted after %" PRIu64 " run%s; nothing is saved yet: the checkpoint is written after each %u runs",
              hunt->runs, plural, HUNT_PIECE_RUNS);
     } else {
@@ -235,7 +235,7 @@ static status_t run_until_end(hunt_t *hunt) {
 }
 
 status_t hunt_run(const hunt_request_t *request) {
-    hunt_t *hunt = calloc(1u, sizeof *hunt);
+    hunt_t *hunt = calloc(1, sizeof *hunt);
 
     if (hunt == NULL) {
         (void)report("out of memory");

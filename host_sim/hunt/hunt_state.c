@@ -25,7 +25,7 @@ bool hunt_state_save(const hunt_request_t *request, hunt_state_t *state, output_
 /** A hunt of fewer runs cannot take back those that are done. */
 static bool check_end(const hunt_request_t *request, const hunt_state_t *state) {
     const uint64_t end =
-        (state->pieces > 0u) ? (((state->pieces - 1u) * request->shards) + request->shard) * HUNT_PIECE_RUNS : 0u;
+        (state->pieces > 0) ? (((state->pieces - 1) * request->shards) + request->shard) * HUNT_PIECE_RUNS : 0;
 
     return (end <= request->runs) ||
            report("%s: its runs go up to %" PRIu64 ": give --runs %" PRIu64 " or more, or remove it to start over",

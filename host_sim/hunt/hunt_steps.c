@@ -56,7 +56,7 @@ static void add_parameter(const steps_t *steps, line_t *line, unsigned i) {
 }
 
 static void add_again(const steps_t *steps, line_t *line, uint32_t every_ms) {
-    if (every_ms > 0u) {
+    if (every_ms > 0) {
         append(line, ", again_every_ms: %" PRIu32 ", again_until_ms: %" PRIu32, every_ms, steps->action->end_ms);
     }
 }
@@ -64,7 +64,7 @@ static void add_again(const steps_t *steps, line_t *line, uint32_t every_ms) {
 static void add_pattern(const steps_t *steps, line_t *line) {
     const uint32_t bad = steps->action->parameters[HUNT_PATTERN_BAD];
 
-    if (bad > 0u) {
+    if (bad > 0) {
         append(line, ", frames: %" PRIu32, bad);
         add_again(steps, line, cycle_of(steps) * (bad + steps->action->parameters[HUNT_PATTERN_GOOD]));
     }
@@ -74,7 +74,7 @@ static void add_bytes(const steps_t *steps, line_t *line) {
     const uint32_t length = steps->action->parameters[HUNT_PATTERN_GOOD];
 
     add_parameter(steps, line, HUNT_PATTERN_BAD);
-    for (uint32_t i = 1u; (i < length) && (i < AGV_DLC); i++) {
+    for (uint32_t i = 1; (i < length) && (i < AGV_DLC); i++) {
         append(line, " 00");
     }
 }
@@ -82,8 +82,8 @@ static void add_bytes(const steps_t *steps, line_t *line) {
 /** Status frames are not forged: no receiver could distinguish them from true ones. */
 static uint32_t free_id(uint32_t id) {
     while ((agv_message_from_id(id, AGV_ID_SET_HEADING) >= AGV_COMMAND_COUNT) &&
-           (agv_message_from_id(id, AGV_ID_SET_HEADING) != (uint32_t)AGV_MSG_NONE)) {
-        id = (id + 1u) & AGV_ID_MAX;
+           (agv_message_from_id(id, AGV_ID_SET_HEADING) != AGV_MSG_NONE)) {
+        id = (id + 1) & AGV_ID_MAX;
     }
     return id;
 }
@@ -134,7 +134,7 @@ static void add_placeholder(const steps_t *steps, line_t *line, char letter) {
         add_again(steps, line, parameters[1]);
         break;
     case 'w':
-        add_again(steps, line, 2u * parameters[HUNT_PATTERN_BAD]);
+        add_again(steps, line, 2 * parameters[HUNT_PATTERN_BAD]);
         break;
     case 'g':
         add_again(steps, line, parameters[HUNT_PATTERN_GOOD]);
@@ -160,7 +160,7 @@ static uint32_t to_slot_ms(const steps_t *steps) {
 
 /** "+12 ", "+$b ": how long after the begin. @return what follows */
 static const char *read_offset(const steps_t *steps, const char *at, uint32_t *offset_ms) {
-    *offset_ms = 0u;
+    *offset_ms = 0;
     if (*at != '+') {
         return at;
     }
@@ -178,10 +178,10 @@ static const char *read_offset(const steps_t *steps, const char *at, uint32_t *o
 static void add_steps(steps_t *steps, const char *words, uint32_t at_ms) {
     while (*words != '\0') {
         const char *end = words + strcspn(words, "|");
-        uint32_t offset_ms = 0u;
+        uint32_t offset_ms = 0;
         const char *at = read_offset(steps, words, &offset_ms);
         line_t *line = &steps->lines[steps->count];
-        if ((at_ms + offset_ms > steps->program->duration_ms) || (steps->count == (uint32_t)STEPS_MAX)) {
+        if ((at_ms + offset_ms > steps->program->duration_ms) || (steps->count == STEPS_MAX)) {
             return;
         }
         *line = (line_t){.at_ms = at_ms + offset_ms, .order = steps->count};
@@ -208,13 +208,13 @@ static int compare(const void *a, const void *b) {
 }
 
 void hunt_steps_write(const hunt_program_t *program, text_t *text) {
-    steps_t steps = {.program = program, .count = 2u};
+    steps_t steps = {.program = program, .count = 2};
 
-    steps.lines[0] = (line_t){.at_ms = DRIVE_MS, .order = 0u};
+    steps.lines[0] = (line_t){.at_ms = DRIVE_MS, .order = 0};
     append(&steps.lines[0], "ai: drive, gear: D, throttle_pct: %" PRIu32 ", steer_deg: %" PRId32, program->throttle_pct,
            program->steer_deg);
-    steps.lines[1] = (line_t){.at_ms = ENGAGE_MS, .order = 1u, .text = "operator: engage"};
-    for (uint32_t i = 0u; i < program->action_count; i++) {
+    steps.lines[1] = (line_t){.at_ms = ENGAGE_MS, .order = 1, .text = "operator: engage"};
+    for (uint32_t i = 0; i < program->action_count; i++) {
         steps.action = &program->actions[i];
         steps.attack = &HUNT_ATTACKS[steps.action->attack];
         add_steps(&steps, steps.attack->begin, steps.action->begin_ms);
@@ -224,7 +224,7 @@ void hunt_steps_write(const hunt_program_t *program, text_t *text) {
     }
     qsort(steps.lines, steps.count, sizeof steps.lines[0], compare);
     text_add(text, "steps:\n");
-    for (uint32_t i = 0u; i < steps.count; i++) {
+    for (uint32_t i = 0; i < steps.count; i++) {
         text_add(text, "  - {at_ms: %" PRIu32 ", %s}\n", steps.lines[i].at_ms, steps.lines[i].text);
     }
 }

@@ -26,15 +26,15 @@ static void write_class(const hunt_program_t *program, uint8_t fault, text_t *te
 }
 
 static void write_config(const hunt_program_t *program, text_t *text) {
-    if (program->setting_count + program->class_count > 0u) {
+    if (program->setting_count + program->class_count > 0) {
         text_add(text, "config:\n");
     }
-    for (uint32_t i = 0u; i < program->setting_count; i++) {
+    for (uint32_t i = 0; i < program->setting_count; i++) {
         text_add(text, "  ");
         write_setting(&program->settings[i], text);
         text_add(text, "\n");
     }
-    for (uint32_t i = 0u; i < program->class_count; i++) {
+    for (uint32_t i = 0; i < program->class_count; i++) {
         text_add(text, "  ");
         write_class(program, program->classes[i], text);
         text_add(text, "\n");
@@ -63,14 +63,14 @@ void hunt_program_write(const hunt_program_t *program, const char *name, text_t 
 
 void hunt_program_describe(const hunt_program_t *program, text_t *text) {
     text_add(text, "%s", program->gateway ? "gateway" : "shared");
-    for (uint32_t i = 0u; i < program->action_count; i++) {
+    for (uint32_t i = 0; i < program->action_count; i++) {
         text_add(text, " %s", HUNT_ATTACKS[program->actions[i].attack].name);
     }
-    for (uint32_t i = 0u; i < program->setting_count; i++) {
+    for (uint32_t i = 0; i < program->setting_count; i++) {
         text_add(text, ", ");
         write_setting(&program->settings[i], text);
     }
-    for (uint32_t i = 0u; i < program->class_count; i++) {
+    for (uint32_t i = 0; i < program->class_count; i++) {
         text_add(text, ", ");
         write_class(program, program->classes[i], text);
     }

@@ -23,7 +23,7 @@ static head_t head_of(const checkpoint_t *checkpoint, const checkpoint_part_t pa
     (void)snprintf(head.magic, sizeof head.magic, "agv %s 2", checkpoint->kind);
     (void)snprintf(head.version, sizeof head.version, "%s", HOST_SIM_VERSION);
     memcpy(head.numbers, checkpoint->numbers, sizeof head.numbers);
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         head.size += parts[i].size;
     }
     return head;
@@ -31,7 +31,7 @@ static head_t head_of(const checkpoint_t *checkpoint, const checkpoint_part_t pa
 
 static uint32_t checksum_of(const checkpoint_part_t parts[], size_t count) {
     uint32_t checksum = AGV_CRC32_START;
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         checksum = agv_crc32(checksum, parts[i].bytes, parts[i].size);
     }
     return checksum;
@@ -58,7 +58,7 @@ bool checkpoint_save(const checkpoint_t *checkpoint, output_t *file, const check
         return false;
     }
     (void)output_write(file, &head, sizeof head);
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         (void)output_write(file, parts[i].bytes, parts[i].size);
     }
     (void)output_write(file, &checksum, sizeof checksum);
@@ -75,11 +75,11 @@ static bool is_kind(const checkpoint_t *checkpoint, const head_t *head, size_t s
 static bool read_all(const checkpoint_t *checkpoint, const checkpoint_part_t parts[], size_t count, FILE *stream) {
     const head_t expected = head_of(checkpoint, parts, count);
     const char *path = checkpoint->path;
-    uint32_t checksum = 0u;
+    uint32_t checksum = 0;
     bool whole = true;
     head_t head;
 
-    const size_t size = fread(&head, 1u, sizeof head, stream);
+    const size_t size = fread(&head, 1, sizeof head, stream);
     if (!is_kind(checkpoint, &head, size)) {
         return report("%s: not a %s checkpoint", path, checkpoint->kind);
     }
@@ -90,10 +90,10 @@ static bool read_all(const checkpoint_t *checkpoint, const checkpoint_part_t par
         return report("%s: the checkpoint of another %s or another build; remove it to start over", path,
                       checkpoint->kind);
     }
-    for (size_t i = 0u; whole && (i < count); i++) {
-        whole = fread(parts[i].bytes, parts[i].size, 1u, stream) == 1u;
+    for (size_t i = 0; whole && (i < count); i++) {
+        whole = fread(parts[i].bytes, parts[i].size, 1, stream) == 1;
     }
-    whole = whole && (fread(&checksum, sizeof checksum, 1u, stream) == 1u) && (fgetc(stream) == EOF);
+    whole = whole && (fread(&checksum, sizeof checksum, 1, stream) == 1) && (fgetc(stream) == EOF);
     return (whole && (checksum == checksum_of(parts, count))) || report(DAMAGED, path);
 }
 

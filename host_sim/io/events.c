@@ -14,8 +14,8 @@
 /** The words of all bits that are set. @param name word of a bit; NULL: there are no further bits */
 static json_t *words_of(const char *(*name)(uint8_t bit), uint16_t bits) {
     json_t *words = json_array();
-    for (uint8_t bit = 0u; name(bit) != NULL; bit++) {
-        if ((bits & (1u << bit)) != 0u) {
+    for (uint8_t bit = 0; name(bit) != NULL; bit++) {
+        if ((bits & (1u << bit)) != 0) {
             json_add(words, json_text(name(bit)));
         }
     }
@@ -38,8 +38,8 @@ static void add_state(json_t *object, const agv_event_t *event) {
 static void add_fault(json_t *object, const agv_event_t *event) {
     json_put(object, "name", json_text(agv_fault_name((agv_fault_t)event->a)));
     json_put(object, "class", json_text(agv_class_name((agv_fault_class_t)event->b)));
-    json_put(object, "active", json_boolean(event->c != 0u));
-    if (event->a == (uint8_t)AGV_FAULT_SELF_TEST_FAILED) {
+    json_put(object, "active", json_boolean(event->c != 0));
+    if (event->a == AGV_FAULT_SELF_TEST_FAILED) {
         json_put(object, "parts", words_of(agv_self_test_part_name, event->missing));
     }
 }
@@ -71,11 +71,11 @@ static void write_recorded(output_t *output, uint64_t t_ms, const agv_event_t *e
         break;
     case AGV_EVENT_OUTPUT:
         object = start(t_ms, "safety_output");
-        json_put(object, "closed", json_boolean(event->a != 0u));
+        json_put(object, "closed", json_boolean(event->a != 0));
         break;
     case AGV_EVENT_RESET:
         object = start(t_ms, "reset");
-        json_put(object, "accepted", json_boolean(event->a != 0u));
+        json_put(object, "accepted", json_boolean(event->a != 0));
         json_put(object, "why", words_of(agv_missing_name, event->missing));
         break;
     case AGV_EVENT_STARTUP:
@@ -89,7 +89,7 @@ static void write_recorded(output_t *output, uint64_t t_ms, const agv_event_t *e
     default:
         return;
     }
-    output_json(output, object, 0u);
+    output_json(output, object, 0);
 }
 
 void events_write(void *ctx, const session_event_t *event) {
@@ -97,7 +97,7 @@ void events_write(void *ctx, const session_event_t *event) {
     if (event->is_led) {
         json_t *object = start(event->t_ms, "led");
         json_put(object, "code", json_integer(event->led_code));
-        output_json(output, object, 0u);
+        output_json(output, object, 0);
     } else {
         write_recorded(output, event->t_ms, &event->recorded);
     }
@@ -133,5 +133,5 @@ void events_write_summary(output_t *output, const events_summary_t *summary) {
     json_put(object, "backward_stamps", json_uint(summary->backward_stamps));
     json_put(object, "final_state", json_text(agv_state_name(summary->final_state)));
     json_put(object, "first_reason", json_text(agv_fault_name(summary->first_reason)));
-    output_json(output, object, 0u);
+    output_json(output, object, 0);
 }

@@ -14,12 +14,12 @@ static void put(output_t *output, const char *text) {
 
 /** Length of the UTF-8 sequence at this place; 0: malformed, or a character that XML forbids. */
 static size_t sequence_length(const char *at) {
-    uint32_t value = 0u;
+    uint32_t value = 0;
     const size_t length = text_character(at, &value);
     const bool is_control = (value < 0x20u) && (value != (uint32_t)'\t') && (value != (uint32_t)'\n');
     const bool is_none =
         ((value >= 0xD800u) && (value <= 0xDFFFu)) || (value == 0xFFFEu) || (value == 0xFFFFu) || (value > 0x10FFFFu);
-    return (is_control || is_none) ? 0u : length;
+    return (is_control || is_none) ? 0 : length;
 }
 
 void junit_text(output_t *output, const char *text) {
@@ -31,8 +31,8 @@ void junit_text(output_t *output, const char *text) {
 
     while (*at != '\0') {
         const size_t length = sequence_length(at);
-        const char *escaped = (length == 0u) ? "?" : NULL;
-        for (size_t i = 0u; i < sizeof escapes / sizeof escapes[0]; i++) {
+        const char *escaped = (length == 0) ? "?" : NULL;
+        for (size_t i = 0; i < sizeof escapes / sizeof escapes[0]; i++) {
             if (*at == escapes[i].plain) {
                 escaped = escapes[i].escaped;
             }
@@ -42,7 +42,7 @@ void junit_text(output_t *output, const char *text) {
         } else {
             (void)output_write(output, at, length);
         }
-        at += (length == 0u) ? 1u : length;
+        at += (length == 0) ? 1 : length;
     }
 }
 
@@ -66,14 +66,14 @@ static void begin_test(output_t *output, const char *class_name, const char *nam
 void junit_test(output_t *output, const char *class_name, const char *name, const char *failures, size_t count,
                 size_t stride) {
     begin_test(output, class_name, name);
-    if (count == 0u) {
+    if (count == 0) {
         put(output, "\"/>\n");
         return;
     }
     put(output, "\">\n    <failure message=\"");
     junit_text(output, failures);
     put(output, "\">");
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         junit_text(output, &failures[i * stride]);
         put(output, "\n");
     }

@@ -42,13 +42,13 @@ static char *destination(const char *path) {
     const char *slash = strrchr(path, '/');
     const char *name = (slash != NULL) ? &slash[1] : path;
     size_t folder_length = (size_t)(name - path);
-    char *folder = (folder_length > 0u) ? strndup(path, folder_length) : strdup(".");
+    char *folder = (folder_length > 0) ? strndup(path, folder_length) : strdup(".");
     char *real_folder = (folder != NULL) ? realpath(folder, NULL) : NULL;
     free(folder);
     if (real_folder == NULL) {
         return NULL;
     }
-    size_t size = strlen(real_folder) + strlen(name) + 2u;
+    size_t size = strlen(real_folder) + strlen(name) + 2;
     real = malloc(size);
     if (real != NULL) {
         (void)snprintf(real, size, "%s/%s", real_folder, name);
@@ -61,7 +61,7 @@ static bool open_temporary(output_t *output, const char *path) {
     static const char suffix[] = ".XXXXXX";
     interrupt_hold();
     output->path = destination(path);
-    size_t length = (output->path != NULL) ? strlen(output->path) : 0u;
+    size_t length = (output->path != NULL) ? strlen(output->path) : 0;
     output->temporary = malloc(length + sizeof suffix);
     if ((output->path == NULL) || (output->temporary == NULL)) {
         output->fd = -1;
@@ -91,7 +91,7 @@ static void begin(output_t *output, const char *path) {
     output->temporary = NULL;
     output->is_slow = false;
     output->error = 0;
-    output->used = 0u;
+    output->used = 0;
 }
 
 bool output_open_in_place(output_t *output, const char *path) {
@@ -140,7 +140,7 @@ bool output_open(output_t *output, const char *path) {
 }
 
 static bool write_all(output_t *output, const char *bytes, size_t size) {
-    size_t done = 0u;
+    size_t done = 0;
     while ((done < size) && (output->error == 0)) {
         size_t left = size - done;
         if (output->is_slow) {
@@ -162,7 +162,7 @@ static bool write_all(output_t *output, const char *bytes, size_t size) {
 
 bool output_flush(output_t *output) {
     size_t used = output->used;
-    output->used = 0u;
+    output->used = 0;
     return write_all(output, output->buffer, used);
 }
 
@@ -199,7 +199,7 @@ bool output_commit(output_t *output) {
 }
 
 bool output_flush_all(output_t outputs[], size_t count) {
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         if (outputs[i].is_open && !output_flush(&outputs[i])) {
             return output_commit(&outputs[i]);
         }
@@ -209,7 +209,7 @@ bool output_flush_all(output_t outputs[], size_t count) {
 
 bool output_commit_all(output_t outputs[], size_t count) {
     bool good = output_flush_all(outputs, count);
-    for (size_t i = 0u; good && (i < count); i++) {
+    for (size_t i = 0; good && (i < count); i++) {
         good = output_commit(&outputs[i]);
     }
     return good;
@@ -265,8 +265,8 @@ static bool is_conflict(const output_role_t *a, const output_role_t *b) {
 }
 
 bool output_check_distinct(const output_role_t *roles, size_t count) {
-    for (size_t a = 0u; a < count; a++) {
-        for (size_t b = a + 1u; b < count; b++) {
+    for (size_t a = 0; a < count; a++) {
+        for (size_t b = a + 1; b < count; b++) {
             if (is_conflict(&roles[a], &roles[b])) {
                 return report("%s and %s are the same file, '%s'", roles[a].role, roles[b].role, roles[b].path);
             }

@@ -13,6 +13,6 @@ void output_json(output_t *output, json_t *value, size_t flags) {
     }
     const size_t length = strlen(text);
     text[length] = '\n'; /* in the place of the terminating zero */
-    (void)output_write(output, text, length + 1u);
+    (void)output_write(output, text, length + 1);
     free(text);
 }

@@ -27,7 +27,7 @@ enum { DAMAGED_LATCH_SIZE = HAL_STORE_LATCH_SIZE_MAX, DAMAGED_BYTE = 0xA5 };
 
 /** Read what is there, FILE_SIZE_MAX at most. @return its size; -1: reported. */
 static ssize_t read_up_to_limit(int fd, const char *path, char *text) {
-    size_t size = 0u;
+    size_t size = 0;
     while (size < FILE_SIZE_MAX) {
         ssize_t count = read(fd, &text[size], FILE_SIZE_MAX - size);
         if (count < 0) {
@@ -44,9 +44,9 @@ static ssize_t read_up_to_limit(int fd, const char *path, char *text) {
 
 /** Read hexadecimal bytes in capital letters, as they are written here. @return how many; 0: none, or damaged */
 static size_t read_hex(const char *text, size_t length, uint8_t *bytes, size_t most) {
-    for (size_t i = 0u; i < length; i++) {
+    for (size_t i = 0; i < length; i++) {
         if (islower((unsigned char)text[i]) != 0) {
-            return 0u;
+            return 0;
         }
     }
     return hex_bytes(text, length, bytes, most);
@@ -63,13 +63,13 @@ static bool take_line(const char *line, size_t length, sim_store_t *store, agv_r
     const char *text = after(line, length, LATCH);
     if (text != NULL) {
         store->latch_size = (uint8_t)read_hex(text, length - (size_t)(text - line), store->latch, sizeof store->latch);
-        return store->latch_size > 0u;
+        return store->latch_size > 0;
     }
     text = after(line, length, RECORD);
     if (text != NULL) {
         uint8_t record[SIM_STORE_RECORD_SIZE_MAX];
         size_t size = read_hex(text, length - (size_t)(text - line), record, sizeof record);
-        return (size > 0u) && sim_store_append(store, record, size);
+        return (size > 0) && sim_store_append(store, record, size);
     }
     text = after(line, length, RECORDER);
     if (text != NULL) {
@@ -125,9 +125,9 @@ bool store_file_may_replace(const char *path) {
     if ((stat(path, &about) != 0) || !S_ISREG(about.st_mode)) {
         return true;
     }
-    char begin[sizeof FIRST_WORD - 1u];
+    char begin[sizeof FIRST_WORD - 1];
     FILE *stream = fopen(path, "rb");
-    const size_t size = (stream != NULL) ? fread(begin, 1u, sizeof begin, stream) : 0u;
+    const size_t size = (stream != NULL) ? fread(begin, 1, sizeof begin, stream) : 0;
     if (stream != NULL) {
         (void)fclose(stream);
     }
@@ -173,20 +173,20 @@ static void put_summed(output_t *output, uint32_t *checksum, const char *text, s
 
 static void put_item(output_t *output, uint32_t *checksum, const char *word, const uint8_t *bytes, size_t size) {
     put_summed(output, checksum, word, strlen(word));
-    for (size_t i = 0u; i < size; i++) {
-        const char pair[2] = {HEX_DIGITS[bytes[i] >> 4u], HEX_DIGITS[bytes[i] & 0xFu]};
+    for (size_t i = 0; i < size; i++) {
+        const char pair[2] = {HEX_DIGITS[bytes[i] >> 4], HEX_DIGITS[bytes[i] & 0xFu]};
         put_summed(output, checksum, pair, sizeof pair);
     }
-    put_summed(output, checksum, "\n", 1u);
+    put_summed(output, checksum, "\n", 1);
 }
 
 void store_file_save(output_t *output, const sim_store_t *store, const agv_recorder_t *recorder) {
     uint32_t checksum = AGV_CRC32_START;
     put_summed(output, &checksum, FIRST_LINE, strlen(FIRST_LINE));
-    if (store->latch_size > 0u) {
+    if (store->latch_size > 0) {
         put_item(output, &checksum, LATCH, store->latch, store->latch_size);
     }
-    for (uint32_t i = 0u; i < store->count; i++) {
+    for (uint32_t i = 0; i < store->count; i++) {
         uint8_t record[SIM_STORE_RECORD_SIZE_MAX];
         size_t size = sim_store_read_record(store, i, record, sizeof record);
         put_item(output, &checksum, RECORD, record, size);

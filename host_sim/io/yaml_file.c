@@ -18,9 +18,9 @@ static unsigned char *read_file(const char *path, size_t *size) {
         (void)report("%s: %s", path, strerror(errno));
         return NULL;
     }
-    unsigned char *bytes = malloc(YAML_FILE_SIZE_MAX + 1u);
+    unsigned char *bytes = malloc(YAML_FILE_SIZE_MAX + 1);
     errno = 0;
-    *size = (bytes != NULL) ? fread(bytes, 1u, YAML_FILE_SIZE_MAX + 1u, file) : 0u;
+    *size = (bytes != NULL) ? fread(bytes, 1, YAML_FILE_SIZE_MAX + 1, file) : 0;
     const char *wrong = NULL;
     if ((bytes == NULL) || (ferror(file) != 0)) {
         wrong = strerror((errno != 0) ? errno : EIO);
@@ -37,9 +37,9 @@ static unsigned char *read_file(const char *path, size_t *size) {
 }
 
 static size_t line_of_offset(const unsigned char *bytes, size_t size, size_t offset) {
-    size_t line = 1u;
-    for (size_t i = 0u; (i < size) && (i < offset); i++) {
-        line += (bytes[i] == '\n') ? 1u : 0u;
+    size_t line = 1;
+    for (size_t i = 0; (i < size) && (i < offset); i++) {
+        line += (bytes[i] == '\n') ? 1 : 0;
     }
     return line;
 }
@@ -48,7 +48,7 @@ static void report_problem(const char *path, const yaml_parser_t *parser, const 
     const char *problem = (parser->problem != NULL) ? parser->problem : "out of memory";
     /* Characters are decoded before lines are counted. */
     size_t line = (parser->error == YAML_READER_ERROR) ? line_of_offset(bytes, size, parser->problem_offset)
-                                                       : parser->problem_mark.line + 1u;
+                                                       : parser->problem_mark.line + 1;
     const size_t at = parser->problem_mark.index;
     const bool is_tab = (parser->error == YAML_SCANNER_ERROR) && (at < size) && (bytes[at] == '\t');
     (void)report_at(path, line, "not YAML: %s%s", problem, is_tab ? ": a tab; YAML is indented with blanks" : "");
@@ -59,7 +59,7 @@ static const char *check_event(const yaml_event_t *event, size_t *depth, size_t 
     switch (event->type) {
     case YAML_DOCUMENT_START_EVENT:
         (*documents)++;
-        return (*documents == 1u) ? NULL : "a second YAML document begins here";
+        return (*documents == 1) ? NULL : "a second YAML document begins here";
     case YAML_SEQUENCE_START_EVENT:
     case YAML_MAPPING_START_EVENT:
         (*depth)++;
@@ -83,8 +83,8 @@ static bool check(const char *path, const unsigned char *bytes, size_t size) {
         return report("%s: out of memory", path);
     }
     yaml_parser_set_input_string(&parser, bytes, size);
-    size_t depth = 0u;
-    size_t documents = 0u;
+    size_t depth = 0;
+    size_t documents = 0;
     bool good = true;
     for (bool at_end = false; good && !at_end;) {
         yaml_event_t event;
@@ -95,7 +95,7 @@ static bool check(const char *path, const unsigned char *bytes, size_t size) {
         }
         const char *wrong = check_event(&event, &depth, &documents);
         if (wrong != NULL) {
-            good = report_at(path, event.start_mark.line + 1u, "%s", wrong);
+            good = report_at(path, event.start_mark.line + 1, "%s", wrong);
         }
         at_end = event.type == YAML_STREAM_END_EVENT;
         yaml_event_delete(&event);
@@ -119,7 +119,7 @@ static bool load(const char *path, const unsigned char *bytes, size_t size, yaml
 }
 
 bool yaml_file_load(const char *path, yaml_document_t *document) {
-    size_t size = 0u;
+    size_t size = 0;
     unsigned char *bytes = read_file(path, &size);
     bool loaded = (bytes != NULL) && check(path, bytes, size) && load(path, bytes, size, document);
     free(bytes);
@@ -133,7 +133,7 @@ bool yaml_text_load(const char *name, const char *text, yaml_document_t *documen
 }
 
 size_t yaml_node_line(const yaml_node_t *node) {
-    return node->start_mark.line + 1u;
+    return node->start_mark.line + 1;
 }
 
 const char *yaml_node_text(const yaml_node_t *node) {

@@ -30,14 +30,14 @@ static size_t find_key(const yaml_reader_t *reader, const yaml_node_t *key, cons
         (void)yaml_reader_fail(reader, key, "a key of %s must be a word", what);
         return count;
     }
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         if (strcmp(keys[i].name, name) == 0) {
             return i;
         }
     }
     char meant[SUGGEST_SIZE];
     suggestion_t suggestion = suggest_begin(name, strlen(name));
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         suggest_offer(&suggestion, keys[i].name, strlen(keys[i].name));
     }
     (void)yaml_reader_fail(reader, key, "unknown key '%.*s' in %s%s", SHOWN_MAX, name, what,
@@ -156,7 +156,7 @@ bool yaml_reader_map(const yaml_reader_t *reader, const yaml_node_t *node, const
     if (!sort_pairs(reader, node, what, keys, count, values)) {
         return false;
     }
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         if (values[i] != NULL) {
             if (!read_value(reader, values[i], &keys[i], target)) {
                 return false;

@@ -37,18 +37,18 @@ static json_t *one_or_two(json_t *value) {
 static json_t *bits(uint32_t highest, const char *decimal) {
     char text[PATTERN_SIZE];
     uint32_t first = highest;
-    unsigned more = 0u;
-    for (; first > (uint32_t)DIGIT_MASK; first >>= BITS_PER_DIGIT) {
+    unsigned more = 0;
+    for (; first > DIGIT_MASK; first >>= BITS_PER_DIGIT) {
         more++;
     }
     char digit[8];
-    (void)snprintf(digit, sizeof digit, (first > 9u) ? "0-9A-%X" : "0-%X", (unsigned)first);
+    (void)snprintf(digit, sizeof digit, (first > 9) ? "0-9A-%X" : "0-%X", (unsigned)first);
     char lower[8] = "";
-    if (first > 9u) {
+    if (first > 9) {
         (void)snprintf(lower, sizeof lower, "a-%x", (unsigned)first);
     }
     char number[PATTERN_SIZE / 3];
-    if (more > 0u) {
+    if (more > 0) {
         (void)snprintf(number, sizeof number, "0*([%s%s][0-9A-Fa-f]{%u}|[0-9A-Fa-f]{1,%u})", digit, lower, more, more);
     } else {
         (void)snprintf(number, sizeof number, "0*[%s%s]", digit, lower);
@@ -75,10 +75,10 @@ static void add_word(json_t *list, const char *word) {
 
 static json_t *word_schema(const yaml_shape_t *shape) {
     json_t *list = json_array();
-    for (size_t i = 0u; (shape->words != NULL) && (shape->words[i].word != NULL); i++) {
+    for (size_t i = 0; (shape->words != NULL) && (shape->words[i].word != NULL); i++) {
         add_word(list, shape->words[i].word);
     }
-    for (size_t i = 0u; (shape->name != NULL) && (shape->name(i) != NULL); i++) {
+    for (size_t i = 0; (shape->name != NULL) && (shape->name(i) != NULL); i++) {
         add_word(list, shape->name(i));
     }
     return json_pack("{s:o}", "enum", list);
@@ -148,7 +148,7 @@ json_t *yaml_schema_of_rule(const yaml_rule_t *rule) {
 static json_t *map_of(const yaml_shape_t *shape) {
     json_t *properties = json_object();
     json_t *required = json_array();
-    for (size_t i = 0u; i < shape->count; i++) {
+    for (size_t i = 0; i < shape->count; i++) {
         (void)json_object_set_new(properties, shape->keys[i].name, yaml_schema_of_key(&shape->keys[i]));
         if (shape->keys[i].required) {
             (void)json_array_append_new(required, json_string(shape->keys[i].name));
@@ -156,7 +156,7 @@ static json_t *map_of(const yaml_shape_t *shape) {
     }
     json_t *schema = json_pack("{s:s, s:o, s:o, s:b}", "type", "object", "properties", properties, "required", required,
                                "additionalProperties", 0);
-    for (size_t i = 0u; (i < YAML_RULES_MAX) && (shape->rules[i].first != NULL); i++) {
+    for (size_t i = 0; (i < YAML_RULES_MAX) && (shape->rules[i].first != NULL); i++) {
         yaml_schema_also(schema, yaml_schema_of_rule(&shape->rules[i]));
     }
     return schema;

@@ -38,15 +38,15 @@ static bool read_whole(const char *text, int64_t *number) {
     const bool is_hex = (text[0] == '0') && (text[1] == 'x');
     const bool is_negative = text[0] == '-';
     const char *digits = &text[(is_hex ? 2 : 0) + (is_negative ? 1 : 0)];
-    uint64_t value = 0u;
+    uint64_t value = 0;
 
     if (!is_digits(digits, is_hex ? HEX_SET : DECIMAL_SET)) {
         return false;
     }
-    if (is_hex ? !words_hex(digits, strlen(digits), &value) : !words_decimal(digits, 0u, INT64_MAX, &value)) {
+    if (is_hex ? !words_hex(digits, strlen(digits), &value) : !words_decimal(digits, 0, INT64_MAX, &value)) {
         value = INT64_MAX;
     }
-    value = (value > (uint64_t)INT64_MAX) ? (uint64_t)INT64_MAX : value;
+    value = (value > INT64_MAX) ? (uint64_t)INT64_MAX : value;
     *number = is_negative ? -(int64_t)value : (int64_t)value;
     return true;
 }
@@ -78,7 +78,7 @@ bool yaml_reader_time(const yaml_reader_t *reader, const yaml_node_t *node, cons
                       int64_t lowest, int64_t highest, int64_t *number) {
     const char *text = scalar_text(reader, node, what, "a time");
     char problem[DURATION_PROBLEM_SIZE];
-    uint64_t value = 0u;
+    uint64_t value = 0;
 
     if (text == NULL) {
         return false;
@@ -106,7 +106,7 @@ static bool take_bits(const yaml_reader_t *reader, const yaml_node_t *node, cons
 bool yaml_reader_hex(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t highest,
                      uint32_t *number) {
     const char *text = yaml_reader_text(reader, node, what);
-    uint64_t value = 0u;
+    uint64_t value = 0;
 
     if (text == NULL) {
         return false;
@@ -121,7 +121,7 @@ bool yaml_reader_hex(const yaml_reader_t *reader, const yaml_node_t *node, const
 bool yaml_reader_id(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t highest,
                     uint32_t *number) {
     const char *text = yaml_reader_text(reader, node, what);
-    uint64_t value = 0u;
+    uint64_t value = 0;
 
     if (text == NULL) {
         return false;
@@ -153,7 +153,7 @@ static bool fail_word(const yaml_reader_t *reader, const yaml_node_t *node, cons
 
     for (const yaml_word_t *word = words; word->word != NULL; word++) {
         const size_t used = strlen(list);
-        (void)snprintf(&list[used], sizeof list - used, "%s%s", (used == 0u) ? "" : ", ", word->word);
+        (void)snprintf(&list[used], sizeof list - used, "%s%s", (used == 0) ? "" : ", ", word->word);
         suggest_offer(&suggestion, word->word, strlen(word->word));
     }
     return yaml_reader_fail(reader, node, "%s: '%.*s' is not one of %s%s", what, VALUE_SHOWN_MAX, text, list,
@@ -224,8 +224,8 @@ bool yaml_reader_time_range(const yaml_reader_t *reader, const yaml_node_t *node
 /** Read one byte, or `..`. @return false: neither. */
 static bool take_byte(const char *text, uint8_t *value, uint8_t *mask) {
     if ((mask != NULL) && (text[0] == '.') && (text[1] == '.')) {
-        *value = 0u;
-        *mask = 0u;
+        *value = 0;
+        *mask = 0;
         return true;
     }
     if ((hex_digit(text[0]) >= HEX_NO_DIGIT) || (hex_digit(text[1]) >= HEX_NO_DIGIT)) {
@@ -241,7 +241,7 @@ static bool take_byte(const char *text, uint8_t *value, uint8_t *mask) {
 bool yaml_reader_bytes(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint8_t value[8],
                        uint8_t *mask, uint8_t *length) {
     const char *text = yaml_node_text(node);
-    unsigned count = 0u;
+    unsigned count = 0;
 
     if (text == NULL) {
         return yaml_reader_fail(reader, node, "%s: bytes are missing", what);
@@ -251,7 +251,7 @@ bool yaml_reader_bytes(const yaml_reader_t *reader, const yaml_node_t *node, con
         memset(mask, 0, BYTES_MAX);
     }
     for (const char *at = text; *at != '\0'; count++) {
-        if ((count == (unsigned)BYTES_MAX) || !take_byte(at, &value[count], (mask != NULL) ? &mask[count] : NULL) ||
+        if ((count == BYTES_MAX) || !take_byte(at, &value[count], (mask != NULL) ? &mask[count] : NULL) ||
             ((at[2] != ' ') && (at[2] != '\0'))) {
             return yaml_reader_fail(reader, node, "%s: '%.*s' is not a list of up to 8 bytes such as \"08 00 FF\"%s",
                                     what, VALUE_SHOWN_MAX, text, (mask != NULL) ? ", '..' for any" : "");

@@ -52,7 +52,7 @@ struct external {
 };
 
 static bool add(frames_t *frames, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t at_us) {
-    if (frames->count == (size_t)FRAMES_MAX) {
+    if (frames->count == FRAMES_MAX) {
         return false;
     }
     frames->items[frames->count] = (heard_t){.side = side, .frame = *frame, .at_us = at_us};
@@ -62,7 +62,7 @@ static bool add(frames_t *frames, hal_can_side_t side, const hal_can_frame_t *fr
 
 static void drop(frames_t *frames, size_t index) {
     frames->count--;
-    memmove(&frames->items[index], &frames->items[index + 1u], (frames->count - index) * sizeof frames->items[0]);
+    memmove(&frames->items[index], &frames->items[index + 1], (frames->count - index) * sizeof frames->items[0]);
 }
 
 static bool is_same(const heard_t *a, const heard_t *b) {
@@ -72,7 +72,7 @@ static bool is_same(const heard_t *a, const heard_t *b) {
 
 /** Whether a frame is one of the vehicle's, which then is found. */
 static bool is_of_vehicle(external_t *external, const heard_t *heard) {
-    for (size_t i = 0u; i < external->vehicle.count; i++) {
+    for (size_t i = 0; i < external->vehicle.count; i++) {
         if (is_same(&external->vehicle.items[i], heard)) {
             drop(&external->vehicle, i);
             return true;
@@ -87,20 +87,20 @@ static bool too_many_frames(const external_t *external) {
 
 /** Of what was heard, keep what it has sent. @return false: reported */
 static bool sort_frames(external_t *external) {
-    for (size_t i = 0u; i < external->heard.count; i++) {
+    for (size_t i = 0; i < external->heard.count; i++) {
         const heard_t *heard = &external->heard.items[i];
         if (!is_of_vehicle(external, heard) && !add(&external->sent, heard->side, &heard->frame, heard->at_us)) {
             return too_many_frames(external);
         }
     }
-    external->heard.count = 0u;
+    external->heard.count = 0;
     return true;
 }
 
 /** Report the frames up to this time. */
 static void report_frames(external_t *external, uint64_t until_us) {
     frames_t *sent = &external->sent;
-    size_t count = 0u;
+    size_t count = 0;
     while ((count < sent->count) && (sent->items[count].at_us <= until_us)) {
         const heard_t *frame = &sent->items[count];
         external->config.on_sent(external->config.ctx, frame->side, &frame->frame, frame->at_us);
@@ -142,8 +142,8 @@ static void report_line(external_t *external, size_t length) {
         return;
     }
     external->has_reported = true;
-    if (!event.is_led && (event.recorded.kind == (uint8_t)AGV_EVENT_OUTPUT)) {
-        external->output_closed = event.recorded.a != 0u;
+    if (!event.is_led && (event.recorded.kind == AGV_EVENT_OUTPUT)) {
+        external->output_closed = event.recorded.a != 0;
     }
     external->config.on_event(external->config.ctx, &event);
 }
@@ -153,18 +153,18 @@ static void report_lines(external_t *external) {
          end = memchr(external->line, '\n', external->line_length)) {
         const size_t length = (size_t)(end - external->line);
         report_line(external, length);
-        external->line_length -= length + 1u;
+        external->line_length -= length + 1;
         memmove(external->line, end + 1, external->line_length);
     }
     if (external->line_length == sizeof external->line) {
-        external->line_length = 0u; /* no event is that long */
+        external->line_length = 0; /* no event is that long */
     }
 }
 
 /** Read some of its output. @return false: it has ended; reported */
 static bool read_output(external_t *external) {
     ssize_t got = 1;
-    for (unsigned i = 0u; (i < READS_AT_ONCE) && (got > 0); i++) {
+    for (unsigned i = 0; (i < READS_AT_ONCE) && (got > 0); i++) {
         got = read(external->output, &external->line[external->line_length],
                    sizeof external->line - external->line_length);
         if (got > 0) {
@@ -178,17 +178,17 @@ static bool read_output(external_t *external) {
 external_t *external_open(const external_config_t *config) {
     const linux_can_options_t options = {.receive_size = RECEIVE_SIZE};
     char error[LINUX_CAN_ERROR_SIZE];
-    external_t *external = calloc(1u, sizeof *external);
+    external_t *external = calloc(1, sizeof *external);
     if (external == NULL) {
         (void)report("out of memory");
         return NULL;
     }
     external->config = *config;
     external->output = -1;
-    for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
+    for (int side = 0; side < HAL_CAN_SIDES; side++) {
         external->rx_sockets[side].fd = -1;
     }
-    for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
+    for (int side = 0; side < HAL_CAN_SIDES; side++) {
         const char *interface = config->interfaces[side];
         if ((interface != NULL) && !linux_can_open(&external->rx_sockets[side], interface, &options, error)) {
             (void)report("%s", error);
@@ -247,7 +247,7 @@ bool external_start(external_t *external) {
         return report("cannot start a process: %s", strerror(errno));
     }
     (void)setpgid(external->pid, external->pid);
-    external->line_length = 0u;
+    external->line_length = 0;
     external->has_reported = false;
     external->output_closed = false;
     return (fcntl(external->output, F_SETFL, O_NONBLOCK) == 0) || report("cannot read its output: %s", strerror(errno));
@@ -255,11 +255,11 @@ bool external_start(external_t *external) {
 
 bool external_wait(external_t *external) {
     struct pollfd file = {.fd = external->output, .events = POLLIN};
-    for (unsigned look = 0u; (look < LOOKS_MAX) && !external->has_reported; look++) {
+    for (unsigned look = 0; (look < LOOKS_MAX) && !external->has_reported; look++) {
         if (interrupt_pending()) {
             return report("interrupted");
         }
-        if ((poll(&file, 1u, LOOK_EVERY_MS) > 0) && !read_output(external)) {
+        if ((poll(&file, 1, LOOK_EVERY_MS) > 0) && !read_output(external)) {
             return false;
         }
     }
@@ -267,9 +267,9 @@ bool external_wait(external_t *external) {
 }
 
 void external_vehicle_sent(external_t *external, hal_can_side_t side, const hal_can_frame_t *frame) {
-    if (!add(&external->vehicle, side, frame, 0u)) {
-        drop(&external->vehicle, 0u); /* the oldest one was not received */
-        (void)add(&external->vehicle, side, frame, 0u);
+    if (!add(&external->vehicle, side, frame, 0)) {
+        drop(&external->vehicle, 0); /* the oldest one was not received */
+        (void)add(&external->vehicle, side, frame, 0);
     }
 }
 
@@ -289,7 +289,7 @@ bool external_output_closed(const external_t *external) {
 void external_close(external_t *external) {
     if (external != NULL) {
         stop(external);
-        for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
+        for (int side = 0; side < HAL_CAN_SIDES; side++) {
             linux_can_close(&external->rx_sockets[side]);
         }
         free(external);

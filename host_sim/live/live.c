@@ -50,9 +50,9 @@ typedef struct {
 
 static void on_event(void *ctx, const session_event_t *event) {
     live_t *live = ctx;
-    const bool is_state = !event->is_led && (event->recorded.kind == (uint8_t)AGV_EVENT_STATE);
+    const bool is_state = !event->is_led && (event->recorded.kind == AGV_EVENT_STATE);
     live->tripped = live->tripped || (is_state && agv_state_is_latched((agv_state_t)event->recorded.b));
-    if (!event->is_led && (event->recorded.kind == (uint8_t)AGV_EVENT_STARTUP)) {
+    if (!event->is_led && (event->recorded.kind == AGV_EVENT_STARTUP)) {
         live->missing = event->recorded.missing;
     }
     monitor_companion_event(&live->screen, event);
@@ -91,7 +91,7 @@ static bool open_outputs(live_t *live) {
     const live_request_t *request = live->request;
     const char *const paths[OUTPUTS] = {[OUT] = request->out, [EVENTS] = request->events};
     bool stdout_is_free = !analysis_paths_use_stdout(&request->analysis);
-    for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
+    for (size_t i = 0; i < OUTPUTS; i++) {
         if ((paths[i] != NULL) && !live_output_open(&live->outputs[i], paths[i])) {
             return false;
         }
@@ -100,7 +100,7 @@ static bool open_outputs(live_t *live) {
     live->stdout_is_free = stdout_is_free;
     live->is_terminal = stdout_is_free && (live->screen.child == 0) && (isatty(STDOUT_FILENO) == 1);
     live->sent.output = &live->outputs[OUT].lines;
-    for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
+    for (int side = 0; side < HAL_CAN_SIDES; side++) {
         const char *interface = request->bus.interfaces[side];
         if (interface != NULL) {
             sent_log_heard(&live->sent, (hal_can_side_t)side, interface, strlen(interface));
@@ -136,7 +136,7 @@ static bool open_analysis(live_t *live) {
     if ((live->analysis == NULL) || !analysis_open(live->analysis)) {
         return false;
     }
-    for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
+    for (int side = 0; side < HAL_CAN_SIDES; side++) {
         const char *name = request->bus.interfaces[side];
         if (name != NULL) {
             analysis_name_side(live->analysis, (hal_can_side_t)side, name, strlen(name));
@@ -182,7 +182,7 @@ static bool prepare(live_t *live) {
 
 /** Files and status line are written after the supervisor's step. */
 static void write_out(live_t *live, uint64_t now_ms) {
-    for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
+    for (size_t i = 0; i < OUTPUTS; i++) {
         live_output_pass(&live->outputs[i]);
     }
     monitor_companion_tell(&live->screen, node_session(live->node), now_ms);
@@ -195,7 +195,7 @@ static void write_out(live_t *live, uint64_t now_ms) {
 static bool run(live_t *live) {
     const uint64_t end_ms =
         (live->request->bus.for_ms == INTERFACE_UNTIL_SIGNAL) ? UINT64_MAX : live->request->bus.for_ms;
-    uint64_t now_ms = 0u;
+    uint64_t now_ms = 0;
     bool good = true;
     monitor_companion_show(&live->screen);
     node_start(live->node);
@@ -203,10 +203,10 @@ static bool run(live_t *live) {
         write_out(live, now_ms);
         const uint32_t what = linux_loop_wait(&live->loop);
         now_ms = node_now_us(live->node) / US_PER_MS;
-        if (((what & LINUX_LOOP_SIGNAL) != 0u) || interrupt_pending() || (now_ms >= end_ms)) {
+        if (((what & LINUX_LOOP_SIGNAL) != 0) || interrupt_pending() || (now_ms >= end_ms)) {
             break;
         }
-        if ((what & LINUX_LOOP_TICK) == 0u) {
+        if ((what & LINUX_LOOP_TICK) == 0) {
             node_receive(live->node);
         } else if (node_tick(live->node)) {
             good = live_files_follow(&live->files, &live->loop, live->node);
@@ -218,9 +218,9 @@ static bool run(live_t *live) {
 static void print_not_supervised(const live_t *live) {
     static const char label[] = "NOT SUPERVISED: ";
     char words[MISSING_TEXT_SIZE];
-    text_t text = {.used = 0u};
+    text_t text = {.used = 0};
     text_add(&text, "never left INIT");
-    if (live->missing != 0u) {
+    if (live->missing != 0) {
         text_add(&text, ", missing: %s", missing_text(live->missing, words));
     } else {
         text_add(&text, "; the run ended before startup_timeout_ms: --why names what was missing");
@@ -235,7 +235,7 @@ static void print_summary(const live_t *live, const events_summary_t *summary) {
         (void)snprintf(more, sizeof more, ", %s", ai);
     }
     summary_print_time(summary, live->request->bus.interfaces[HAL_CAN_VEHICLE], more);
-    if (summary->supervised_ms == 0u) {
+    if (summary->supervised_ms == 0) {
         print_not_supervised(live);
     }
     summary_print_frames(summary, live->request->config.shadow == AGV_SHADOW_ON);
@@ -251,7 +251,7 @@ static bool conclude(live_t *live, const events_summary_t *summary) {
     }
     live_status_end(&live->status);
     bool good = true;
-    for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
+    for (size_t i = 0; i < OUTPUTS; i++) {
         good = live_output_end(&live->outputs[i]) && good;
     }
     if (live->analysis != NULL) {
@@ -278,12 +278,12 @@ static status_t run_prepared(live_t *live) {
     if (!good) {
         return STATUS_UNUSABLE;
     }
-    const bool is_met = !live->tripped && (summary.supervised_ms > 0u);
+    const bool is_met = !live->tripped && (summary.supervised_ms > 0);
     return (!is_met && live->request->fail_on_trip) ? STATUS_UNMET : STATUS_OK;
 }
 
 status_t live_run(const live_request_t *request) {
-    live_t *live = calloc(1u, sizeof *live);
+    live_t *live = calloc(1, sizeof *live);
     if (live == NULL) {
         (void)report("out of memory");
         return STATUS_UNUSABLE;
@@ -296,7 +296,7 @@ status_t live_run(const live_request_t *request) {
     if (live->loop_is_open) {
         linux_loop_close(&live->loop);
     }
-    for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
+    for (size_t i = 0; i < OUTPUTS; i++) {
         output_discard(&live->outputs[i].lines);
     }
     if (live->analysis != NULL) {

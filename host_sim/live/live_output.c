@@ -22,7 +22,7 @@ bool live_output_open(live_output_t *output, const char *path) {
     const bool exists = stat(path, &existing) == 0;
     const bool is_missing = !exists && (errno == ENOENT);
 
-    output->lost_lines = 0u;
+    output->lost_lines = 0;
     output->is_file = !output_is_stdout(path) && (exists ? S_ISREG(existing.st_mode) : is_missing);
     if (output->is_file) {
         return output_open_in_place(&output->lines, path);
@@ -42,13 +42,13 @@ bool live_output_has_room(live_output_t *output) {
         return false;
     }
     const bool fits = output->lines.used <= OUTPUT_BUFFER_SIZE - LINE_MAX_SIZE;
-    output->lost_lines += fits ? 0u : 1u;
+    output->lost_lines += fits ? 0 : 1;
     return fits;
 }
 
 /** Write the buffer as far as the file takes it within @p wait_ms. @return false: not all of it */
 static bool pass(output_t *lines, int wait_ms) {
-    size_t done = 0u;
+    size_t done = 0;
     while ((done < lines->used) && (lines->error == 0) && live_output_takes(lines->fd, wait_ms)) {
         const size_t left = lines->used - done;
         const ssize_t count = write(lines->fd, &lines->buffer[done], (left < CHUNK) ? left : CHUNK);
@@ -62,11 +62,11 @@ static bool pass(output_t *lines, int wait_ms) {
     }
     lines->used -= done;
     (void)memmove(lines->buffer, &lines->buffer[done], lines->used);
-    return lines->used == 0u;
+    return lines->used == 0;
 }
 
 void live_output_pass(live_output_t *output) {
-    if (output->lines.is_open && (output->lines.used > 0u)) {
+    if (output->lines.is_open && (output->lines.used > 0)) {
         (void)pass(&output->lines, 0);
     }
 }
@@ -78,10 +78,10 @@ bool live_output_end(live_output_t *output) {
     }
     const bool all = pass(lines, LAST_WAIT_MS);
     if (!all && (lines->error == 0)) {
-        lines->used = 0u;
+        lines->used = 0;
         lines->error = ETIMEDOUT;
     }
-    if (output->lost_lines > 0u) {
+    if (output->lost_lines > 0) {
         note("%s: %" PRIu64 " lines were lost because they were not read fast enough", lines->name, output->lost_lines);
     }
     return output_commit(lines);

@@ -14,7 +14,7 @@ enum { EVERY_MS = 200, TENTH_MS = 100, LINE_SIZE = 200, WIDTH = 80 };
 /** The last column stays free: a line that fills the terminal would begin a new one. */
 static int columns(void) {
     struct winsize size;
-    const bool known = (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) && (size.ws_col > 0u);
+    const bool known = (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) && (size.ws_col > 0);
     const int width = (known ? (int)size.ws_col : WIDTH) - 1;
     return (width < LINE_SIZE) ? width : LINE_SIZE - 1;
 }

@@ -27,7 +27,7 @@ struct node {
 static void choose_ids(node_t *node) {
     agv_ids_t ids;
     agv_config_ids(&node->config, &ids);
-    for (uint16_t id = 1u; id <= (uint16_t)AGV_ID_MAX; id++) {
+    for (uint16_t id = 1; id <= AGV_ID_MAX; id++) {
         if (message_id_is_heard(&ids, id) || (id == node->config.status_frame_id)) {
             node->ids[node->id_count] = id;
             node->id_count++;
@@ -56,7 +56,7 @@ static bool open_port(node_t *node) {
 }
 
 node_t *node_open(const node_config_t *config) {
-    node_t *node = calloc(1u, sizeof *node);
+    node_t *node = calloc(1, sizeof *node);
     if (node == NULL) {
         (void)report("out of memory");
         return NULL;
@@ -92,7 +92,7 @@ int node_fd(const node_t *node, hal_can_side_t side) {
 static bool receive_until(node_t *node, uint64_t until_us) {
     hal_can_side_t side = HAL_CAN_VEHICLE;
     hal_can_frame_t frame;
-    uint64_t at_us = 0u;
+    uint64_t at_us = 0;
     int later = 0;
     for (int i = 0; (i < FRAMES_AT_ONCE) && (later < LATER_AT_ONCE); i++) {
         if (!linux_hal_receive(&node->hal, &side, &frame, &at_us)) {
@@ -108,7 +108,7 @@ static bool receive_until(node_t *node, uint64_t until_us) {
 }
 
 void node_receive(node_t *node) {
-    (void)receive_until(node, 0u);
+    (void)receive_until(node, 0);
 }
 
 /** The tick's time is read before the frames: none that has arrived by then is unread when deadlines are judged (SUP-2). */

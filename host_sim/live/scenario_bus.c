@@ -52,7 +52,7 @@ static uint64_t scenario_ms(const run_t *run) {
 static void on_supervisor_event(void *ctx, const session_event_t *reported) {
     run_t *run = ctx;
     session_event_t event = *reported;
-    event.t_ms = run->has_begun ? scenario_ms(run) : 0u;
+    event.t_ms = run->has_begun ? scenario_ms(run) : 0;
     (void)scenario_events_note(&run->events, &event);
     scenario_check_event(run->check, &event);
     if (run->watch->on_event != NULL) {
@@ -63,7 +63,7 @@ static void on_supervisor_event(void *ctx, const session_event_t *reported) {
 static void on_supervisor_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t at_us) {
     const run_t *run = ctx;
     const int64_t since_us = run->node_began_us + (int64_t)at_us;
-    const uint64_t t_us = (since_us > 0) ? (uint64_t)since_us : 0u;
+    const uint64_t t_us = (since_us > 0) ? (uint64_t)since_us : 0;
     scenario_check_frame(run->check, t_us, side, SCENARIO_FROM_SUPERVISOR, frame);
     if (run->watch->on_sent != NULL) {
         run->watch->on_sent(run->watch->sent_ctx, side, frame, t_us);
@@ -140,7 +140,7 @@ static bool open_vehicle(run_t *run) {
     if (!run->vehicle_is_open) {
         return false;
     }
-    for (unsigned file = 0u; file < VEHICLE_BUS_FILES; file++) {
+    for (unsigned file = 0; file < VEHICLE_BUS_FILES; file++) {
         const int fd = vehicle_bus_fd(&run->vehicle, file);
         if ((fd >= 0) && !linux_loop_add(&run->loop, fd)) {
             return report("cannot wait for the interfaces: %s", strerror(errno));
@@ -151,14 +151,14 @@ static bool open_vehicle(run_t *run) {
 
 /** Open a socket that only sends. */
 static bool open_tx_socket(linux_can_t *can, const char *interface) {
-    static const uint16_t nothing[1] = {0u};
+    static const uint16_t nothing[1] = {0};
     const linux_can_options_t options = {.ids = nothing};
     char error[LINUX_CAN_ERROR_SIZE];
     return linux_can_open(can, interface, &options, error) || report("%s", error);
 }
 
 static bool open_controllers(run_t *run) {
-    for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
+    for (int side = 0; side < HAL_CAN_SIDES; side++) {
         const char *interface = interface_of(run, (hal_can_side_t)side);
         if ((interface != NULL) && !open_tx_socket(&run->controllers[side], interface)) {
             return false;
@@ -185,7 +185,7 @@ static bool switch_on(run_t *run) {
 static bool restart(run_t *run, uint64_t t_ms, uint32_t off_ms) {
     close_node(run);
     run->halted_until_ms = t_ms + off_ms;
-    return (off_ms > 0u) || switch_on(run);
+    return (off_ms > 0) || switch_on(run);
 }
 
 static bool do_to_supervisor(run_t *run, uint64_t t_ms, const scenario_action_t *action) {
@@ -199,7 +199,7 @@ static bool do_to_supervisor(run_t *run, uint64_t t_ms, const scenario_action_t 
         return true;
     case SCENARIO_BUS_OFF:
         /* A virtual interface does not see the request to recover; it comes after a configured time. */
-        play_controller(run, action->side, CANDUMP_ERROR_BUS_OFF, 0u);
+        play_controller(run, action->side, CANDUMP_ERROR_BUS_OFF, 0);
         run->recovered_ms[action->side] = t_ms + run->scenario->config.bus_off_recovery_ms + RECOVERY_MS;
         return true;
     case SCENARIO_OVERRUN:
@@ -222,10 +222,10 @@ static bool do_steps(run_t *run, uint64_t t_ms) {
             good = do_to_supervisor(run, t_ms, &step->supervisor);
         }
     }
-    for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
+    for (int side = 0; side < HAL_CAN_SIDES; side++) {
         if (t_ms >= run->recovered_ms[side]) {
             run->recovered_ms[side] = UINT64_MAX;
-            play_controller(run, (hal_can_side_t)side, CANDUMP_ERROR_RESTARTED, 0u);
+            play_controller(run, (hal_can_side_t)side, CANDUMP_ERROR_RESTARTED, 0);
         }
     }
     return good;
@@ -275,9 +275,9 @@ static void check(run_t *run, uint64_t t_ms) {
 /** Wait for something, and do what is due. @return false: reported */
 static bool advance(run_t *run) {
     const uint32_t what = linux_loop_wait(&run->loop);
-    const bool is_tick = (what & LINUX_LOOP_TICK) != 0u;
+    const bool is_tick = (what & LINUX_LOOP_TICK) != 0;
     const uint64_t t_ms = scenario_ms(run);
-    if (((what & LINUX_LOOP_SIGNAL) != 0u) || interrupt_pending()) {
+    if (((what & LINUX_LOOP_SIGNAL) != 0) || interrupt_pending()) {
         return report("interrupted");
     }
     if (!do_steps(run, t_ms)) {
@@ -317,7 +317,7 @@ static void close_run(run_t *run) {
     if (run->vehicle_is_open) {
         vehicle_bus_close(&run->vehicle);
     }
-    for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
+    for (int side = 0; side < HAL_CAN_SIDES; side++) {
         linux_can_close(&run->controllers[side]);
     }
     if (run->loop_is_open) {
@@ -326,7 +326,7 @@ static void close_run(run_t *run) {
 }
 
 bool scenario_bus_check(const scenario_bus_t *bus) {
-    for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
+    for (int side = 0; side < HAL_CAN_SIDES; side++) {
         linux_can_t can = {.fd = -1};
         if ((bus->interfaces[side] != NULL) && !open_tx_socket(&can, bus->interfaces[side])) {
             return false;
@@ -341,7 +341,7 @@ bool scenario_bus_play(const scenario_bus_t *bus, scenario_check_t *check, const
     run_t run = {.bus = bus, .scenario = check->scenario, .check = check, .watch = watch, .summary = summary};
     live_files_none(&run.files);
     scenario_player_init(&run.player, check->scenario, &run.events);
-    for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
+    for (int side = 0; side < HAL_CAN_SIDES; side++) {
         run.controllers[side].fd = -1;
         run.recovered_ms[side] = UINT64_MAX;
     }

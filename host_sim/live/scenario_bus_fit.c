@@ -95,7 +95,7 @@ static const char *why_not_step(const scenario_bus_t *bus, const scenario_t *sce
 }
 
 static const char *why_not_vehicle(const vehicle_action_t *action) {
-    const bool is_fd = (action->what == VEHICLE_DO_SEND) && ((action->frame.flags & HAL_CAN_FD) != 0u);
+    const bool is_fd = (action->what == VEHICLE_DO_SEND) && ((action->frame.flags & HAL_CAN_FD) != 0);
     return is_fd ? "send, kind: fd: the interfaces are used as classic CAN" : NULL;
 }
 
@@ -107,10 +107,10 @@ static const char *why_not_start(const scenario_t *scenario) {
     if (scenario->bitrate != SCENARIO_DEFAULT_BITRATE) {
         return "bitrate: a real interface has its own";
     }
-    if (scenario->clock_start_ms != 0u) {
+    if (scenario->clock_start_ms != 0) {
         return "clock_start_ms: the clock of a node starts at 0";
     }
-    if (scenario->tick_phase_us != 0u) {
+    if (scenario->tick_phase_us != 0) {
         return "tick_phase_us: the tick phase of a computer cannot be set";
     }
     if (scenario->reset_cause != HAL_RESET_POWER_ON) {
@@ -119,12 +119,12 @@ static const char *why_not_start(const scenario_t *scenario) {
     if (has_board(&scenario->board)) {
         return NO_BOARD;
     }
-    return (scenario->board.failed == 0u) ? NULL : "self_test: the self-test of a node cannot be made to fail";
+    return (scenario->board.failed == 0) ? NULL : "self_test: the self-test of a node cannot be made to fail";
 }
 
 /** Faults that need acknowledges on the wire. */
 static const char *why_not_faults(const scenario_expect_t *expect) {
-    for (size_t i = 0u; i < expect->faults.count; i++) {
+    for (size_t i = 0; i < expect->faults.count; i++) {
         if (expect->faults.items[i].fault == AGV_FAULT_TX_STALLED) {
             return "TX_STALLED: a virtual interface accepts every frame, acknowledged or not";
         }
@@ -135,10 +135,10 @@ static const char *why_not_faults(const scenario_expect_t *expect) {
 /** On the AI side that is AI_BUS_OFF, which bus-off is, too. */
 static const char *why_not_ai_side(const scenario_t *scenario) {
     bool expected = false;
-    for (size_t i = 0u; i < scenario->expect.faults.count; i++) {
+    for (size_t i = 0; i < scenario->expect.faults.count; i++) {
         expected = expected || (scenario->expect.faults.items[i].fault == AGV_FAULT_AI_BUS_OFF);
     }
-    for (size_t i = 0u; i < scenario->step_count; i++) {
+    for (size_t i = 0; i < scenario->step_count; i++) {
         const scenario_step_t *step = &scenario->steps[i];
         expected = expected && (step->of_vehicle || (step->supervisor.what != SCENARIO_BUS_OFF));
     }
@@ -154,15 +154,15 @@ static bool is_of_protocol(const scenario_t *scenario, uint32_t id) {
 static const char *why_not_counters(const scenario_t *scenario) {
     static const char *const of_received[] = {"received", "dropped", "rejected_extended", "rejected_remote"};
     bool foreign = false;
-    for (size_t i = 0u; i < scenario->step_count; i++) {
+    for (size_t i = 0; i < scenario->step_count; i++) {
         const scenario_step_t *step = &scenario->steps[i];
         foreign = foreign || (step->of_vehicle && (step->vehicle.what == VEHICLE_DO_SEND) &&
                               !is_of_protocol(scenario, step->vehicle.frame.id));
     }
-    for (size_t i = 0u; foreign && (i < scenario->expect.counters.count); i++) {
+    for (size_t i = 0; foreign && (i < scenario->expect.counters.count); i++) {
         const scenario_counter_t *counter = &scenario->expect.counters.items[i];
-        for (size_t name = 0u; name < sizeof of_received / sizeof of_received[0]; name++) {
-            if ((counter->value.from > 0u) && (strcmp(counter->name, of_received[name]) == 0)) {
+        for (size_t name = 0; name < sizeof of_received / sizeof of_received[0]; name++) {
+            if ((counter->value.from > 0) && (strcmp(counter->name, of_received[name]) == 0)) {
                 return "counters_at_end: the kernel filters out frames that are not in the protocol";
             }
         }
@@ -172,13 +172,13 @@ static const char *why_not_counters(const scenario_t *scenario) {
 
 const char *scenario_bus_leaves_out(const scenario_bus_t *bus, const scenario_t *scenario) {
     const char *why = why_not_start(scenario);
-    for (size_t i = 0u; (why == NULL) && (i < scenario->step_count); i++) {
+    for (size_t i = 0; (why == NULL) && (i < scenario->step_count); i++) {
         const scenario_step_t *step = &scenario->steps[i];
         why = step->of_vehicle ? why_not_vehicle(&step->vehicle) : why_not_step(bus, scenario, &step->supervisor);
     }
     why = (why != NULL) ? why : why_not_faults(&scenario->expect);
     why = (why != NULL) ? why : why_not_ai_side(scenario);
-    if ((why == NULL) && (scenario->expect.no_hazards != 0u)) {
+    if ((why == NULL) && (scenario->expect.no_hazards != 0)) {
         why = "hazards: they are checked inside the simulated vehicle";
     }
     return (why != NULL) ? why : why_not_counters(scenario);
@@ -186,33 +186,33 @@ const char *scenario_bus_leaves_out(const scenario_bus_t *bus, const scenario_t 
 
 /** An event is expected within it. */
 static void widen(scenario_window_t *window, uint32_t by_ms) {
-    window->early = (window->from < by_ms) ? by_ms - window->from : 0u;
-    window->from = (window->from > by_ms) ? window->from - by_ms : 0u;
+    window->early = (window->from < by_ms) ? by_ms - window->from : 0;
+    window->from = (window->from > by_ms) ? window->from - by_ms : 0;
     window->to = (window->to < UINT32_MAX - by_ms) ? window->to + by_ms : UINT32_MAX;
 }
 
 /** A condition holds throughout it. One that is shorter than twice the tolerance is not evaluated. */
 static void narrow(scenario_window_t *window, uint32_t by_ms, uint32_t end_ms) {
-    const bool from_start = (window->from == 0u) && (window->after.kind == (uint8_t)SCENARIO_FROM_START);
-    window->from += from_start ? 0u : by_ms;
-    window->to -= ((window->to < end_ms) && (window->to > by_ms)) ? by_ms : 0u;
+    const bool from_start = (window->from == 0) && (window->after.kind == SCENARIO_FROM_START);
+    window->from += from_start ? 0 : by_ms;
+    window->to -= ((window->to < end_ms) && (window->to > by_ms)) ? by_ms : 0;
     if (window->from > window->to) {
-        *window = (scenario_window_t){.from = UINT32_MAX, .to = 0u};
+        *window = (scenario_window_t){.from = UINT32_MAX, .to = 0};
     }
 }
 
 static void tolerate_frames(scenario_t *scenario, uint32_t by_ms) {
     scenario_expect_t *expect = &scenario->expect;
-    for (size_t i = 0u; i < expect->frames.count; i++) {
+    for (size_t i = 0; i < expect->frames.count; i++) {
         scenario_frame_t *frame = &expect->frames.items[i];
-        if (frame->every_ms != 0u) {
+        if (frame->every_ms != 0) {
             narrow(&frame->at_ms, by_ms, scenario->duration_ms);
             frame->jitter_ms += by_ms;
         } else if (frame->count.to == UINT32_MAX) {
             widen(&frame->at_ms, by_ms);
         }
     }
-    for (size_t i = 0u; i < expect->never.count; i++) {
+    for (size_t i = 0; i < expect->never.count; i++) {
         narrow(&expect->never.items[i].at_ms, by_ms, scenario->duration_ms);
     }
 }
@@ -221,16 +221,16 @@ void scenario_bus_tolerate(const scenario_bus_t *bus, scenario_t *scenario) {
     const uint32_t tolerance_ms = bus->tolerance_ms;
     scenario_expect_t *expect = &scenario->expect;
     if (bus->command != NULL) {
-        expect->counters.count = 0u;
+        expect->counters.count = 0;
     }
     tolerate_frames(scenario, tolerance_ms);
-    for (size_t i = 0u; i < expect->states.count; i++) {
+    for (size_t i = 0; i < expect->states.count; i++) {
         widen(&expect->states.items[i].at_ms, tolerance_ms);
     }
-    for (size_t i = 0u; i < expect->outputs.count; i++) {
+    for (size_t i = 0; i < expect->outputs.count; i++) {
         widen(&expect->outputs.items[i].at_ms, tolerance_ms);
     }
-    for (size_t i = 0u; i < expect->leds.count; i++) {
+    for (size_t i = 0; i < expect->leds.count; i++) {
         scenario_led_t *led = &expect->leds.items[i];
         if (led->at_some_time) {
             widen(&led->at_ms, tolerance_ms);
@@ -238,17 +238,17 @@ void scenario_bus_tolerate(const scenario_bus_t *bus, scenario_t *scenario) {
             narrow(&led->at_ms, tolerance_ms, scenario->duration_ms);
         }
     }
-    for (size_t i = 0u; i < expect->faults.count; i++) {
+    for (size_t i = 0; i < expect->faults.count; i++) {
         widen(&expect->faults.items[i].raised_ms, tolerance_ms);
         widen(&expect->faults.items[i].ended_ms, tolerance_ms);
     }
-    for (size_t i = 0u; i < expect->resets.count; i++) {
+    for (size_t i = 0; i < expect->resets.count; i++) {
         widen(&expect->resets.items[i].at_ms, tolerance_ms);
     }
-    for (size_t i = 0u; i < expect->startups.count; i++) {
+    for (size_t i = 0; i < expect->startups.count; i++) {
         widen(&expect->startups.items[i].at_ms, tolerance_ms);
     }
-    for (size_t i = 0u; i < expect->vehicle.count; i++) {
+    for (size_t i = 0; i < expect->vehicle.count; i++) {
         scenario_window_t *window = &expect->vehicle.items[i].at_ms;
         if (window->from != window->to) {
             widen(window, tolerance_ms);

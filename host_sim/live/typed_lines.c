@@ -24,7 +24,7 @@ static bool is_readable(int fd) {
 static void read_more(typed_lines_t *typed) {
     const size_t room = sizeof typed->bytes - typed->used;
 
-    if (typed->ended || (room == 0u) || !is_readable(typed->fd)) {
+    if (typed->ended || (room == 0) || !is_readable(typed->fd)) {
         return;
     }
     const ssize_t got = read(typed->fd, &typed->bytes[typed->used], room);
@@ -40,7 +40,7 @@ static const char *take_line(typed_lines_t *typed, size_t length, size_t taken) 
     const bool too_long = typed->too_long;
 
     memcpy(typed->line, typed->bytes, length);
-    typed->line[(length > 0u) && (typed->line[length - 1u] == '\r') ? length - 1u : length] = '\0';
+    typed->line[(length > 0) && (typed->line[length - 1] == '\r') ? length - 1 : length] = '\0';
     memmove(typed->bytes, &typed->bytes[taken], typed->used - taken);
     typed->used -= taken;
     typed->too_long = false;
@@ -60,12 +60,11 @@ const char *typed_lines_next(typed_lines_t *typed) {
     }
     if (end != NULL) {
         const size_t length = (size_t)(end - typed->bytes);
-        return take_line(typed, length, length + 1u);
+        return take_line(typed, length, length + 1);
     }
     if (typed->used == sizeof typed->bytes) {
         typed->too_long = true;
-        typed->used = 0u;
+        typed->used = 0;
     }
-    return (typed->ended && ((typed->used > 0u) || typed->too_long)) ? take_line(typed, typed->used, typed->used)
-                                                                     : NULL;
+    return (typed->ended && ((typed->used > 0) || typed->too_long)) ? take_line(typed, typed->used, typed->used) : NULL;
 }

@@ -17,8 +17,8 @@ typedef struct {
     bool ended; /**< nothing more will come */
     bool too_long;
     size_t used;
-    char bytes[TYPED_LINE_MAX + 1u];
-    char line[TYPED_LINE_MAX + 1u];
+    char bytes[TYPED_LINE_MAX + 1];
+    char line[TYPED_LINE_MAX + 1];
 } typed_lines_t;
 
 /** Nothing read yet. */

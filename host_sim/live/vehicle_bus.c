@@ -8,12 +8,12 @@
 enum { RECORDS_AT_ONCE = 1000 };
 
 static hal_can_side_t side_of_file(const vehicle_bus_t *bus, unsigned file) {
-    return (file < (unsigned)VEHICLE_NODES) ? vehicle_side_of(&bus->vehicle, (vehicle_node_t)file)
-                                            : (hal_can_side_t)(file - (unsigned)VEHICLE_NODES);
+    return (file < VEHICLE_NODES) ? vehicle_side_of(&bus->vehicle, (vehicle_node_t)file)
+                                  : (hal_can_side_t)(file - (unsigned)VEHICLE_NODES);
 }
 
 static linux_can_t *can_of_file(vehicle_bus_t *bus, unsigned file) {
-    return (file < (unsigned)VEHICLE_NODES) ? &bus->nodes[file] : &bus->rogues[file - (unsigned)VEHICLE_NODES];
+    return (file < VEHICLE_NODES) ? &bus->nodes[file] : &bus->rogues[file - (unsigned)VEHICLE_NODES];
 }
 
 /** The time by the clock; not before what the vehicle has seen. */
@@ -40,15 +40,15 @@ static void send_frame(void *ctx, vehicle_node_t from, hal_can_side_t side, cons
 }
 
 static bool open_file(vehicle_bus_t *bus, unsigned file) {
-    static const uint16_t nothing[1] = {0u};
+    static const uint16_t nothing[1] = {0};
     const char *interface = bus->config.interfaces[side_of_file(bus, file)];
     linux_can_options_t options = {.own_frames = bus->config.on_sent != NULL};
     char error[LINUX_CAN_ERROR_SIZE];
 
-    if ((file >= (unsigned)VEHICLE_NODES) && !options.own_frames) {
+    if ((file >= VEHICLE_NODES) && !options.own_frames) {
         options.ids = nothing; /* a rogue node does not listen */
     }
-    if ((file >= (unsigned)VEHICLE_NODES) && (interface == NULL)) {
+    if ((file >= VEHICLE_NODES) && (interface == NULL)) {
         return true; /* no AI side, no rogue node there */
     }
     return linux_can_open(can_of_file(bus, file), interface, &options, error) || report("%s", error);
@@ -57,11 +57,11 @@ static bool open_file(vehicle_bus_t *bus, unsigned file) {
 bool vehicle_bus_open(vehicle_bus_t *bus, const vehicle_bus_config_t *config) {
     memset(bus, 0, sizeof *bus);
     bus->config = *config;
-    for (unsigned file = 0u; file < VEHICLE_BUS_FILES; file++) {
+    for (unsigned file = 0; file < VEHICLE_BUS_FILES; file++) {
         can_of_file(bus, file)->fd = -1;
     }
     vehicle_init(&bus->vehicle, &config->vehicle, send_frame, bus);
-    for (unsigned file = 0u; file < VEHICLE_BUS_FILES; file++) {
+    for (unsigned file = 0; file < VEHICLE_BUS_FILES; file++) {
         if (!open_file(bus, file)) {
             vehicle_bus_close(bus);
             return false;
@@ -71,7 +71,7 @@ bool vehicle_bus_open(vehicle_bus_t *bus, const vehicle_bus_config_t *config) {
 }
 
 int vehicle_bus_fd(const vehicle_bus_t *bus, unsigned file) {
-    return (file < (unsigned)VEHICLE_NODES) ? bus->nodes[file].fd : bus->rogues[file - (unsigned)VEHICLE_NODES].fd;
+    return (file < VEHICLE_NODES) ? bus->nodes[file].fd : bus->rogues[file - (unsigned)VEHICLE_NODES].fd;
 }
 
 /** A frame for a node; or one that has left it. */
@@ -82,7 +82,7 @@ static void take(vehicle_bus_t *bus, unsigned file, const linux_can_record_t *re
     if (!record->own) {
         vehicle_receive(&bus->vehicle, (vehicle_node_t)file, advance_clock(bus, at_us), &record->frame);
     } else if (config->on_sent != NULL) {
-        config->on_sent(config->ctx, (vehicle_node_t)((file < (unsigned)VEHICLE_NODES) ? file : VEHICLE_ROGUE),
+        config->on_sent(config->ctx, (vehicle_node_t)((file < VEHICLE_NODES) ? file : VEHICLE_ROGUE),
                         side_of_file(bus, file), &record->frame, at_us);
     }
 }
@@ -114,10 +114,10 @@ static bool receive_file(vehicle_bus_t *bus, unsigned file) {
 }
 
 bool vehicle_bus_receive(vehicle_bus_t *bus) {
-    for (unsigned side = 0u; side < (unsigned)HAL_CAN_SIDES; side++) {
+    for (unsigned side = 0; side < HAL_CAN_SIDES; side++) {
         bus->is_down[side] = bus->is_down[side] && !linux_can_is_up(&bus->rogues[side]);
     }
-    for (unsigned file = 0u; file < VEHICLE_BUS_FILES; file++) {
+    for (unsigned file = 0; file < VEHICLE_BUS_FILES; file++) {
         if (!receive_file(bus, file)) {
             return false;
         }
@@ -145,7 +145,7 @@ bool vehicle_bus_do(vehicle_bus_t *bus, const vehicle_action_t *action) {
 }
 
 void vehicle_bus_close(vehicle_bus_t *bus) {
-    for (unsigned file = 0u; file < VEHICLE_BUS_FILES; file++) {
+    for (unsigned file = 0; file < VEHICLE_BUS_FILES; file++) {
         linux_can_close(can_of_file(bus, file));
         can_of_file(bus, file)->fd = -1;
     }

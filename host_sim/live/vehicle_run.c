@@ -55,7 +55,7 @@ static void act_on_faults(vehicle_run_t *run, uint64_t now_ms) {
 
     while ((run->next_fault < request->fault_count) && (request->faults[run->next_fault].step.at_ms <= now_ms)) {
         run->next_fault++;
-        do_action(run, &request->faults[run->next_fault - 1u]);
+        do_action(run, &request->faults[run->next_fault - 1]);
     }
 }
 
@@ -87,7 +87,7 @@ static void operate(vehicle_run_t *run, uint64_t now_ms) {
 }
 
 static void show_links(vehicle_run_t *run) {
-    for (unsigned side = 0u; side < (unsigned)HAL_CAN_SIDES; side++) {
+    for (unsigned side = 0; side < HAL_CAN_SIDES; side++) {
         if (run->bus.is_down[side] != run->was_down[side]) {
             run->was_down[side] = run->bus.is_down[side];
             vehicle_show_event(&run->show, run->bus.now_ms, run->request->bus.interfaces[side], "the interface is %s",
@@ -142,7 +142,7 @@ static void take_typed(vehicle_run_t *run) {
     if (typed->ended && !run->has_more_typed) {
         return;
     }
-    for (unsigned i = 0u; (i < (unsigned)LINES_AT_ONCE) && !run->quits && (line != NULL); i++) {
+    for (unsigned i = 0; (i < LINES_AT_ONCE) && !run->quits && (line != NULL); i++) {
         line = typed_lines_next(typed);
         if (line != NULL) {
             on_typed_line(run, line);
@@ -180,7 +180,7 @@ static void show_end(vehicle_run_t *run) {
 static bool goes_on(const vehicle_run_t *run, uint32_t events) {
     const uint64_t for_ms = run->request->bus.for_ms;
 
-    return ((events & LINUX_LOOP_SIGNAL) == 0u) && !run->quits && (ferror(stdout) == 0) &&
+    return ((events & LINUX_LOOP_SIGNAL) == 0) && !run->quits && (ferror(stdout) == 0) &&
            ((for_ms == INTERFACE_UNTIL_SIGNAL) || (run->bus.now_ms < for_ms));
 }
 
@@ -190,13 +190,13 @@ static bool run_until_end(vehicle_run_t *run) {
     bool there = true;
 
     while (there && goes_on(run, events)) {
-        if ((events & LINUX_LOOP_TICK) != 0u) {
+        if ((events & LINUX_LOOP_TICK) != 0) {
             there = tick(run);
         }
-        if (((events & LINUX_LOOP_FILE) != 0u) || !run->waits_for_typed || run->has_more_typed) {
+        if (((events & LINUX_LOOP_FILE) != 0) || !run->waits_for_typed || run->has_more_typed) {
             take_typed(run);
         }
-        events = there ? linux_loop_wait(&run->loop) : 0u;
+        events = there ? linux_loop_wait(&run->loop) : 0;
     }
     return there;
 }

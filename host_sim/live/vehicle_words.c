@@ -61,7 +61,7 @@ static bool split(line_t *line, const char *separators) {
         if (*at == '\0') {
             return true;
         }
-        if (line->count == (unsigned)PARTS_MAX) {
+        if (line->count == PARTS_MAX) {
             return report_wrong_line(line, "too many words");
         }
         line->parts[line->count] = at;
@@ -75,7 +75,7 @@ static bool split(line_t *line, const char *separators) {
 
 /** The supervisor and its board are those of the simulated bus only. */
 static bool is_on_a_bus(const yaml_word_t *actor) {
-    return actor->value < (int)ACTOR_SUPERVISOR;
+    return actor->value < ACTOR_SUPERVISOR;
 }
 
 static const yaml_word_t *find_actor(const char *name) {
@@ -95,7 +95,7 @@ static bool check_actor(const line_t *line) {
         return report("%s: '%.40s' is not one of " ACTORS "%s", line->source, line->parts[0],
                       line->is_typed ? ", " COMMANDS : "");
     }
-    if (line->count == 1u) {
+    if (line->count == 1) {
         return report("%s: the action of %s is missing", line->source, actor->word);
     }
     const scenario_action_row_t *row = scenario_find_action((scenario_actor_t)actor->value, line->parts[1]);
@@ -128,7 +128,7 @@ static bool build(const line_t *line, yaml_document_t *document) {
         if (part[length] == '\0') {
             return report("%s: '%.40s': NAME=VALUE is needed here", line->source, part);
         }
-        good = add_pair(line, document, step, part, length, &part[length + 1u]);
+        good = add_pair(line, document, step, part, length, &part[length + 1]);
     }
     return good;
 }
@@ -143,14 +143,14 @@ static bool read_step(const line_t *line, const agv_config_t *config, scenario_s
     const bool good =
         build(line, &document) && scenario_parse_step(&reader, yaml_document_get_root_node(&document), config, step);
     yaml_document_delete(&document);
-    return good && ((step->again_every_ms == 0u) || report_wrong_line(line, "again_every_ms is for scenario files"));
+    return good && ((step->again_every_ms == 0) || report_wrong_line(line, "again_every_ms is for scenario files"));
 }
 
 static void describe(const line_t *line, char what[VEHICLE_WORDS_MAX]) {
-    size_t used = 0u;
+    size_t used = 0;
 
-    for (unsigned i = 1u; i < line->count; i++) {
-        used += (size_t)snprintf(&what[used], VEHICLE_WORDS_MAX - used, "%s%s", (i > 1u) ? " " : "", line->parts[i]);
+    for (unsigned i = 1; i < line->count; i++) {
+        used += (size_t)snprintf(&what[used], VEHICLE_WORDS_MAX - used, "%s%s", (i > 1) ? " " : "", line->parts[i]);
     }
 }
 
@@ -158,7 +158,7 @@ static bool read_line(line_t *line, const char *separators, const agv_config_t *
     if (!split(line, separators)) {
         return false;
     }
-    if (line->count == 0u) {
+    if (line->count == 0) {
         return report_wrong_line(line, "actor and action are missing");
     }
     if (!check_actor(line) || !read_step(line, config, &words->step)) {
@@ -172,7 +172,7 @@ static bool read_line(line_t *line, const char *separators, const agv_config_t *
 static bool take_text(line_t *line, const char *text, const char *before, const char *after) {
     (void)snprintf(line->source, sizeof line->source, "%s%.*s%s", before, SHOWN_MAX, text, after);
     return (snprintf(line->text, sizeof line->text, "%s", text) < (int)sizeof line->text) ||
-           report("%s: longer than %u characters", line->source, VEHICLE_WORDS_MAX - 1u);
+           report("%s: longer than %u characters", line->source, VEHICLE_WORDS_MAX - 1);
 }
 
 vehicle_command_t vehicle_words_command(const char *text) {
@@ -206,7 +206,7 @@ static bool has_empty_part(const char *text, const char *dash, const char *at) {
 }
 
 bool vehicle_words_fault(const char *text, const agv_config_t *config, vehicle_words_t *words) {
-    line_t line = {.count = 0u};
+    line_t line = {.count = 0};
 
     if (!take_text(&line, text, "--fault ", "")) {
         return false;
@@ -242,9 +242,9 @@ static void print_item(int *column, const char *item) {
 
 /** Add the names of parameters. */
 static void add_parameters(char *item, uint32_t parameters, const char *before, const char *after) {
-    for (unsigned i = 0u; i < SCENARIO_PARAMETERS; i++) {
+    for (unsigned i = 0; i < SCENARIO_PARAMETERS; i++) {
         const size_t used = strlen(item);
-        if ((parameters & (1u << i)) != 0u) {
+        if ((parameters & (1u << i)) != 0) {
             (void)snprintf(&item[used], HELP_WIDTH - used, "%s%s%s", before, SCENARIO_PARAMETER_ROWS[i].name, after);
         }
     }
@@ -260,11 +260,11 @@ static void print_action(int *column, const scenario_action_row_t *row) {
 }
 
 static void print_actions(scenario_actor_t actor, const char *who) {
-    const scenario_action_row_t *row = scenario_action(0u);
+    const scenario_action_row_t *row = scenario_action(0);
     int column = HELP_INDENT;
 
     (void)printf("%-*s", HELP_INDENT, who);
-    for (size_t i = 0u; row != NULL; i++, row = scenario_action(i)) {
+    for (size_t i = 0; row != NULL; i++, row = scenario_action(i)) {
         if ((row->actor == actor) && row->of_vehicle) {
             print_action(&column, row);
         }
@@ -273,11 +273,11 @@ static void print_actions(scenario_actor_t actor, const char *who) {
 }
 
 static void print_fields(void) {
-    const scenario_field_row_t *row = scenario_field(0u);
+    const scenario_field_row_t *row = scenario_field(0);
     int column = HELP_INDENT;
 
     (void)printf("%-*s", HELP_INDENT, "field=");
-    for (size_t i = 0u; row != NULL; i++, row = scenario_field(i)) {
+    for (size_t i = 0; row != NULL; i++, row = scenario_field(i)) {
         char item[HELP_WIDTH];
         (void)snprintf(item, sizeof item, "%s %s", SCENARIO_ACTORS[row->actor].word, row->name);
         print_item(&column, item);

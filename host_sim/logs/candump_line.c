@@ -25,13 +25,13 @@ static inline bool is_decimal(char character) {
 
 static const char *parse_fraction(const char **cursor, uint64_t *us) {
     const char *at = *cursor;
-    uint32_t value = 0u;
-    uint32_t count = 0u;
+    uint32_t value = 0;
+    uint32_t count = 0;
     for (; is_decimal(*at); at++) {
-        value = (count < 6u) ? ((value * 10u) + (uint32_t)(*at - '0')) : value;
+        value = (count < 6) ? ((value * 10) + (uint32_t)(*at - '0')) : value;
         count++;
     }
-    if ((count != 6u) && (count != 9u)) {
+    if ((count != 6) && (count != 9)) {
         return "the time stamp has neither 6 nor 9 decimals";
     }
     *us = value;
@@ -46,15 +46,15 @@ static const char *parse_stamp(const char **cursor, uint64_t *stamp_us) {
     }
     at++;
     const char *seconds_at = at;
-    uint64_t seconds = 0u;
+    uint64_t seconds = 0;
     for (; is_decimal(*at) && ((size_t)(at - seconds_at) < SECONDS_DIGITS_MAX); at++) {
-        seconds = (seconds * 10u) + (uint64_t)(*at - '0');
+        seconds = (seconds * 10) + (uint64_t)(*at - '0');
     }
     if ((at == seconds_at) || (*at != '.')) {
         return "the time stamp is not a number of seconds with decimals";
     }
     at++;
-    uint64_t us = 0u;
+    uint64_t us = 0;
     const char *wrong = parse_fraction(&at, &us);
     if (wrong != NULL) {
         return wrong;
@@ -77,7 +77,7 @@ static const char *parse_interface(const char **cursor, candump_record_t *record
         at++;
     }
     record->interface_length = (size_t)(at - record->interface);
-    if ((record->interface_length == 0u) || (*at != ' ')) {
+    if ((record->interface_length == 0) || (*at != ' ')) {
         return "the interface name is missing, or nothing follows it";
     }
     if (record->interface_length > CANDUMP_INTERFACE_MAX) {
@@ -89,10 +89,10 @@ static const char *parse_interface(const char **cursor, candump_record_t *record
 
 static const char *parse_id(const char **cursor, hal_can_frame_t *frame) {
     const char *at = *cursor;
-    uint32_t id = 0u;
-    size_t count = 0u;
-    for (uint32_t value = hex_digit(*at); (value < HEX_NO_DIGIT) && (count < 9u); value = hex_digit(*at)) {
-        id = (id << 4u) | value;
+    uint32_t id = 0;
+    size_t count = 0;
+    for (uint32_t value = hex_digit(*at); (value < HEX_NO_DIGIT) && (count < 9); value = hex_digit(*at)) {
+        id = (id << 4) | value;
         count++;
         at++;
     }
@@ -100,14 +100,14 @@ static const char *parse_id(const char **cursor, hal_can_frame_t *frame) {
         return "a hexadecimal identifier followed by # is missing";
     }
     *cursor = &at[1];
-    if (count == 3u) {
+    if (count == 3) {
         frame->id = id;
         return (id <= CANDUMP_ID_MAX) ? NULL : "the identifier is above 7FF";
     }
-    if (count != 8u) {
-        return (count == 5u) ? "CAN XL frames are not supported" : "the identifier has neither 3 nor 8 digits";
+    if (count != 8) {
+        return (count == 5) ? "CAN XL frames are not supported" : "the identifier has neither 3 nor 8 digits";
     }
-    bool is_error = (id & CANDUMP_ERROR_FLAG) != 0u;
+    bool is_error = (id & CANDUMP_ERROR_FLAG) != 0;
     frame->flags = is_error ? HAL_CAN_ERROR : HAL_CAN_EXTENDED;
     frame->id = is_error ? (id & ~CANDUMP_ERROR_FLAG) : id;
     return (frame->id <= CANDUMP_EXTENDED_ID_MAX) ? NULL : "the identifier is above 1FFFFFFF";
@@ -136,7 +136,7 @@ static void parse_remote(const char **cursor, hal_can_frame_t *frame) {
 
 static const char *parse_data(const char **cursor, hal_can_frame_t *frame, uint32_t most) {
     const char *at = *cursor;
-    uint32_t length = 0u;
+    uint32_t length = 0;
     for (;;) {
         uint32_t high = hex_digit(at[0]);
         if (high >= HEX_NO_DIGIT) {
@@ -150,7 +150,7 @@ static const char *parse_data(const char **cursor, hal_can_frame_t *frame, uint3
             return (most == DATA_MAX) ? "the data is longer than 8 bytes" : "the data is longer than 64 bytes";
         }
         if (length < DATA_MAX) {
-            frame->data[length] = (uint8_t)((high << 4u) | low);
+            frame->data[length] = (uint8_t)((high << 4) | low);
         }
         length++;
         at += 2;
@@ -162,7 +162,7 @@ static const char *parse_data(const char **cursor, hal_can_frame_t *frame, uint3
 
 static const char *parse_payload(const char **cursor, hal_can_frame_t *frame) {
     const char *at = *cursor;
-    if ((*at == 'R') && ((frame->flags & HAL_CAN_ERROR) == 0u)) {
+    if ((*at == 'R') && ((frame->flags & HAL_CAN_ERROR) == 0)) {
         (*cursor)++;
         parse_remote(cursor, frame);
         return NULL;
@@ -174,7 +174,7 @@ static const char *parse_payload(const char **cursor, hal_can_frame_t *frame) {
         }
         return wrong;
     }
-    if ((frame->flags & HAL_CAN_ERROR) != 0u) {
+    if ((frame->flags & HAL_CAN_ERROR) != 0) {
         return "an error frame is not CAN FD";
     }
     if (hex_digit(at[1]) >= HEX_NO_DIGIT) {
@@ -191,9 +191,9 @@ bool candump_is_from(const candump_record_t *record, const char *interface) {
 }
 
 const char *candump_id_text(char text[CANDUMP_ID_SIZE], uint32_t id, uint8_t flags) {
-    const bool is_error = (flags & HAL_CAN_ERROR) != 0u;
-    const bool is_long = is_error || ((flags & HAL_CAN_EXTENDED) != 0u);
-    (void)snprintf(text, CANDUMP_ID_SIZE, "%0*" PRIX32, is_long ? 8 : 3, id | (is_error ? CANDUMP_ERROR_FLAG : 0u));
+    const bool is_error = (flags & HAL_CAN_ERROR) != 0;
+    const bool is_long = is_error || ((flags & HAL_CAN_EXTENDED) != 0);
+    (void)snprintf(text, CANDUMP_ID_SIZE, "%0*" PRIX32, is_long ? 8 : 3, id | (is_error ? CANDUMP_ERROR_FLAG : 0));
     return text;
 }
 
@@ -222,17 +222,17 @@ const char *candump_parse(const char *line, size_t length, candump_record_t *rec
 
 static char *put_decimal(char *to, uint64_t value, uint32_t least_digits) {
     char digits[20];
-    uint32_t count = 0u;
+    uint32_t count = 0;
     do {
-        digits[count] = (char)('0' + (char)(value % 10u));
-        value /= 10u;
+        digits[count] = (char)('0' + (char)(value % 10));
+        value /= 10;
         count++;
-    } while (value != 0u);
+    } while (value != 0);
     while (count < least_digits) {
         digits[count] = '0';
         count++;
     }
-    while (count > 0u) {
+    while (count > 0) {
         count--;
         *to = digits[count];
         to++;
@@ -241,8 +241,8 @@ static char *put_decimal(char *to, uint64_t value, uint32_t least_digits) {
 }
 
 static char *put_hex(char *to, uint32_t value, uint32_t digits) {
-    for (uint32_t left = digits; left > 0u; left--) {
-        *to = HEX_DIGITS[(value >> (4u * (left - 1u))) & 0xFu];
+    for (uint32_t left = digits; left > 0; left--) {
+        *to = HEX_DIGITS[(value >> (4 * (left - 1))) & 0xFu];
         to++;
     }
     return to;
@@ -251,19 +251,19 @@ static char *put_hex(char *to, uint32_t value, uint32_t digits) {
 size_t candump_write(char *line, uint64_t stamp_us, const char *interface, const hal_can_frame_t *frame) {
     char *to = line;
     *to++ = '(';
-    to = put_decimal(to, stamp_us / (uint64_t)US_PER_S, 10u);
+    to = put_decimal(to, stamp_us / US_PER_S, 10);
     *to++ = '.';
-    to = put_decimal(to, stamp_us % (uint64_t)US_PER_S, 6u);
+    to = put_decimal(to, stamp_us % US_PER_S, 6);
     *to++ = ')';
     *to++ = ' ';
     size_t length = strlen(interface);
     (void)memcpy(to, interface, length);
     to += length;
     *to++ = ' ';
-    to = put_hex(to, frame->id, ((frame->flags & HAL_CAN_EXTENDED) != 0u) ? 8u : 3u);
+    to = put_hex(to, frame->id, ((frame->flags & HAL_CAN_EXTENDED) != 0) ? 8 : 3);
     *to++ = '#';
-    for (uint32_t i = 0u; (i < frame->length) && (i < DATA_MAX); i++) {
-        to = put_hex(to, frame->data[i], 2u);
+    for (uint32_t i = 0; (i < frame->length) && (i < DATA_MAX); i++) {
+        to = put_hex(to, frame->data[i], 2);
     }
     *to++ = '\n';
     return (size_t)(to - line);

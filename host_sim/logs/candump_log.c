@@ -20,21 +20,21 @@
 bool candump_open(candump_log_t *log, const char *path, bool skip_bad) {
     bool is_stdin = strcmp(path, "-") == 0;
     log->name = report_input_name(path);
-    log->line = 0u;
-    log->skipped = 0u;
+    log->line = 0;
+    log->skipped = 0;
     log->skip_bad = skip_bad;
     log->at_end = false;
     log->is_cut_off = false;
     log->is_checked = false;
     log->format = CANDUMP_FORMAT_UNKNOWN;
-    log->frameless = 0u;
+    log->frameless = 0;
     log->newest_us = UINT64_MAX;
-    log->late_line = 0u;
+    log->late_line = 0;
     log->screen = (candump_screen_t){0};
     log->asc = (vector_asc_t){0};
     gunzip_init(&log->gunzip);
-    log->begin = 0u;
-    log->end = 0u;
+    log->begin = 0;
+    log->end = 0;
     log->fd = is_stdin ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC);
     return (log->fd >= 0) ? true : report("%s: %s", path, strerror(errno));
 }
@@ -89,10 +89,10 @@ static ssize_t read_file(void *ctx, void *bytes, size_t size) {
 
 /** Read more behind what is there. @return false: an error (reported) or an interruption. */
 static bool fill(candump_log_t *log) {
-    if (log->begin > 0u) {
+    if (log->begin > 0) {
         (void)memmove(log->buffer, &log->buffer[log->begin], log->end - log->begin);
         log->end -= log->begin;
-        log->begin = 0u;
+        log->begin = 0;
     }
     const char *wrong = NULL;
     const ssize_t count =
@@ -106,13 +106,13 @@ static bool fill(candump_log_t *log) {
     const bool is_known = log->format != CANDUMP_FORMAT_UNKNOWN;
     const uint64_t most = is_known ? CANDUMP_FRAMELESS_MAX : CANDUMP_UNKNOWN_MAX;
     if (log->frameless > most) {
-        return report("%s: contains no frame in %" PRIu64 " MiB; given up", log->name, most >> 20u);
+        return report("%s: contains no frame in %" PRIu64 " MiB; given up", log->name, most >> 20);
     }
     return true;
 }
 
 static bool report_foreign(const candump_log_t *log, const log_foreign_t *format) {
-    text_t advice = {.used = 0u};
+    text_t advice = {.used = 0};
     log_foreign_advice(&advice, format, (log->fd == STDIN_FILENO) ? "FILE" : log->name);
     return report("%s: %s", log->name, advice.bytes);
 }
@@ -138,13 +138,13 @@ static bool check_beginning(candump_log_t *log) {
     }
     if (!log->skip_bad && looks_binary(log)) {
         return report_at(
-            log->name, 1u,
+            log->name, 1,
             "binary data: unknown log format; readable are candump -l, candump -t a, -t A or -t z, and Vector ASC");
     }
     static const char utf8_mark[] = "\xEF\xBB\xBF";
     const bool is_marked =
-        (log->end >= sizeof utf8_mark - 1u) && (memcmp(log->buffer, utf8_mark, sizeof utf8_mark - 1u) == 0);
-    log->begin = is_marked ? sizeof utf8_mark - 1u : 0u;
+        (log->end >= sizeof utf8_mark - 1) && (memcmp(log->buffer, utf8_mark, sizeof utf8_mark - 1) == 0);
+    log->begin = is_marked ? sizeof utf8_mark - 1 : 0;
     return true;
 }
 
@@ -159,15 +159,15 @@ static char *cut_line(candump_log_t *log, size_t *length, bool *failed) {
         char *begin = &log->buffer[log->begin];
         size_t size = log->end - log->begin;
         char *feed = memchr(begin, '\n', size);
-        if ((feed == NULL) && log->at_end && (too_long || (size > 0u))) {
+        if ((feed == NULL) && log->at_end && (too_long || (size > 0))) {
             feed = &log->buffer[log->end]; /* a last line without a line feed: the buffer has room for one */
             *feed = '\n';
             log->end++;
             log->is_cut_off = true;
         }
         if (feed != NULL) {
-            *length = too_long ? (CANDUMP_LONG_LINE_MAX + 1u) : (size_t)(feed - begin);
-            log->begin += (size_t)(feed - begin) + 1u;
+            *length = too_long ? (CANDUMP_LONG_LINE_MAX + 1) : (size_t)(feed - begin);
+            log->begin += (size_t)(feed - begin) + 1;
             log->line++;
             return begin;
         }
@@ -191,7 +191,7 @@ static char *cut_line(candump_log_t *log, size_t *length, bool *failed) {
 }
 
 static bool is_blank(const char *line, size_t length) {
-    size_t i = 0u;
+    size_t i = 0;
     while ((i < length) && ((line[i] == ' ') || (line[i] == '\t') || (line[i] == '\r'))) {
         i++;
     }
@@ -243,7 +243,7 @@ static const char *parse_line(candump_log_t *log, const char *line, size_t lengt
  */
 static bool may_lack_data(const candump_log_t *log, const hal_can_frame_t *frame) {
     return log->is_cut_off && (log->format == CANDUMP_FORMAT_LOG) && (frame->length < sizeof frame->data) &&
-           ((frame->flags & (HAL_CAN_FD | HAL_CAN_REMOTE)) == 0u);
+           ((frame->flags & (HAL_CAN_FD | HAL_CAN_REMOTE)) == 0);
 }
 
 /**
@@ -255,11 +255,11 @@ static const char *check_stamp(candump_log_t *log, uint64_t stamp_us) {
     const bool is_newer = is_first || (stamp_us > log->newest_us);
     if (is_first || !is_newer || (stamp_us - log->newest_us <= CANDUMP_GAP_MAX_US)) {
         log->newest_us = is_newer ? stamp_us : log->newest_us;
-        log->late_line = 0u;
+        log->late_line = 0;
         return NULL;
     }
     const uint64_t apart_us = (stamp_us > log->late_us) ? stamp_us - log->late_us : log->late_us - stamp_us;
-    if ((log->late_line != 0u) && (apart_us <= CANDUMP_GAP_MAX_US)) {
+    if ((log->late_line != 0) && (apart_us <= CANDUMP_GAP_MAX_US)) {
         log->line = log->late_line;
         log->is_cut_off = false;
         log->skip_bad = false;
@@ -287,7 +287,7 @@ static void remark_base(candump_log_t *log) {
 
 candump_result_t candump_next(candump_log_t *log, candump_record_t *record) {
     bool failed = !log->is_checked && !check_beginning(log);
-    size_t length = 0u;
+    size_t length = 0;
     const char *line = failed ? NULL : cut_line(log, &length, &failed);
     for (; line != NULL; line = cut_line(log, &length, &failed)) {
         const bool is_blank_line = (length <= CANDUMP_LINE_MAX) && is_blank(line, length);
@@ -302,7 +302,7 @@ candump_result_t candump_next(candump_log_t *log, candump_record_t *record) {
         }
         wrong = (wrong == NULL) ? check_stamp(log, record->stamp_us) : wrong;
         if (wrong == NULL) {
-            log->frameless = 0u;
+            log->frameless = 0;
             remark_base(log);
             return CANDUMP_RECORD;
         }

@@ -55,7 +55,7 @@ typedef struct {
     gunzip_t gunzip;
     size_t begin; /**< of what is not read yet, in `buffer` */
     size_t end;
-    char buffer[CANDUMP_BUFFER_SIZE + 1u];
+    char buffer[CANDUMP_BUFFER_SIZE + 1];
 } candump_log_t;
 
 /** What reading a line came to. */

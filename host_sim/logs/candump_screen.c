@@ -21,15 +21,15 @@ static bool part(log_token_t token, size_t at, size_t length, uint32_t *number) 
 /** Read "2026-11-20" and "10:32:04.100000". */
 static bool date_us(log_token_t date, log_token_t time, uint64_t *us) {
     civil_t civil;
-    uint64_t seconds = 0u;
-    uint64_t fraction_us = 0u;
-    if ((date.length != (size_t)DATE_LENGTH) || (time.length <= (size_t)TIME_LENGTH) || (date.at[4] != '-') ||
-        (date.at[7] != '-') || (time.at[2] != ':') || (time.at[5] != ':')) {
+    uint64_t seconds = 0;
+    uint64_t fraction_us = 0;
+    if ((date.length != DATE_LENGTH) || (time.length <= TIME_LENGTH) || (date.at[4] != '-') || (date.at[7] != '-') ||
+        (time.at[2] != ':') || (time.at[5] != ':')) {
         return false;
     }
-    const log_token_t fraction = {.at = &time.at[6], .length = time.length - 6u};
-    if (!part(date, 0u, 4u, &civil.year) || !part(date, 5u, 2u, &civil.month) || !part(date, 8u, 2u, &civil.day) ||
-        !part(time, 0u, 2u, &civil.hour) || !part(time, 3u, 2u, &civil.minute) || !part(time, 6u, 2u, &civil.second) ||
+    const log_token_t fraction = {.at = &time.at[6], .length = time.length - 6};
+    if (!part(date, 0, 4, &civil.year) || !part(date, 5, 2, &civil.month) || !part(date, 8, 2, &civil.day) ||
+        !part(time, 0, 2, &civil.hour) || !part(time, 3, 2, &civil.minute) || !part(time, 6, 2, &civil.second) ||
         !log_token_seconds(fraction, &fraction_us) || !civil_seconds(&civil, &seconds)) {
         return false;
     }
@@ -48,13 +48,13 @@ static const char *parse_stamp(const char **cursor, const char *end, uint64_t *s
     const log_token_t first = log_token_next(&at, close);
     const log_token_t second = log_token_next(&at, close);
     *cursor = &close[1];
-    const bool good = (second.length == 0u) ? log_token_seconds(first, stamp_us) : date_us(first, second, stamp_us);
+    const bool good = (second.length == 0) ? log_token_seconds(first, stamp_us) : date_us(first, second, stamp_us);
     return good ? NULL : "the time stamp is neither seconds nor a date and a time";
 }
 
 static const char *parse_interface(const char **cursor, const char *end, candump_record_t *record) {
     const log_token_t name = log_token_next(cursor, end);
-    if (name.length == 0u) {
+    if (name.length == 0) {
         return "the interface name is missing, or nothing follows it";
     }
     record->interface = name.at;
@@ -70,16 +70,16 @@ static const char *parse_id(const char **cursor, const char *end, hal_can_frame_
         (void)log_token_next(cursor, end);
         token = log_token_next(cursor, end);
     }
-    uint32_t id = 0u;
+    uint32_t id = 0;
     if (!log_token_number(token, HEX, LONG_ID_MAX, &id) ||
-        ((token.length != (size_t)ID_DIGITS) && (token.length != (size_t)LONG_ID_DIGITS))) {
+        ((token.length != ID_DIGITS) && (token.length != LONG_ID_DIGITS))) {
         return "an identifier of 3 or 8 hexadecimal digits is missing";
     }
-    if (token.length == (size_t)ID_DIGITS) {
+    if (token.length == ID_DIGITS) {
         frame->id = id;
         return (id <= CANDUMP_ID_MAX) ? NULL : "the identifier is above 7FF";
     }
-    const bool is_error = (id & CANDUMP_ERROR_FLAG) != 0u;
+    const bool is_error = (id & CANDUMP_ERROR_FLAG) != 0;
     frame->flags = is_error ? HAL_CAN_ERROR : HAL_CAN_EXTENDED;
     frame->id = id & ~CANDUMP_ERROR_FLAG;
     return NULL;
@@ -88,25 +88,25 @@ static const char *parse_id(const char **cursor, const char *end, hal_can_frame_
 /** Read the length, "[8]" or, of CAN FD, "[08]". */
 static const char *parse_length(const char **cursor, const char *end, hal_can_frame_t *frame) {
     const log_token_t token = log_token_next(cursor, end);
-    const bool is_bracketed = (token.length >= 3u) && (token.length <= 4u) &&
-                              (((token.at[0] == '[') && (token.at[token.length - 1u] == ']')) ||
-                               ((token.at[0] == '{') && (token.at[token.length - 1u] == '}')));
-    uint32_t length = 0u;
-    if (!is_bracketed || !part(token, 1u, token.length - 2u, &length) || (length > (uint32_t)FD_DATA_MAX)) {
+    const bool is_bracketed = (token.length >= 3) && (token.length <= 4) &&
+                              (((token.at[0] == '[') && (token.at[token.length - 1] == ']')) ||
+                               ((token.at[0] == '{') && (token.at[token.length - 1] == '}')));
+    uint32_t length = 0;
+    if (!is_bracketed || !part(token, 1, token.length - 2, &length) || (length > FD_DATA_MAX)) {
         return "the length in brackets is missing";
     }
-    const bool is_fd = (token.at[0] == '[') && (token.length > 3u);
-    frame->flags |= is_fd ? HAL_CAN_FD : 0u;
-    frame->length = (uint8_t)((!is_fd && (length > (uint32_t)DATA_MAX)) ? (uint32_t)DATA_MAX : length);
+    const bool is_fd = (token.at[0] == '[') && (token.length > 3);
+    frame->flags |= is_fd ? HAL_CAN_FD : 0;
+    frame->length = (uint8_t)((!is_fd && (length > DATA_MAX)) ? (uint32_t)DATA_MAX : length);
     return NULL;
 }
 
 /** What may follow the data: nothing, "ERRORFRAME", the text of -a. */
 static const char *parse_rest(const char *at, const char *end) {
     const log_token_t token = log_token_next(&at, end);
-    const bool is_text = (token.length > 0u) && (token.at[0] == '\'');
-    return ((token.length == 0u) || is_text || log_token_is(token, "ERRORFRAME")) ? NULL
-                                                                                  : "unexpected text after the frame";
+    const bool is_text = (token.length > 0) && (token.at[0] == '\'');
+    return ((token.length == 0) || is_text || log_token_is(token, "ERRORFRAME")) ? NULL
+                                                                                 : "unexpected text after the frame";
 }
 
 static const char *parse_data(const char *at, const char *end, hal_can_frame_t *frame) {
@@ -115,13 +115,13 @@ static const char *parse_data(const char *at, const char *end, hal_can_frame_t *
         frame->flags |= HAL_CAN_REMOTE;
         return log_token_is(log_token_next(&rest, end), "request") ? parse_rest(rest, end) : "the data is not readable";
     }
-    for (uint32_t i = 0u; i < frame->length; i++) {
+    for (uint32_t i = 0; i < frame->length; i++) {
         const log_token_t token = log_token_next(&at, end);
-        uint32_t byte = 0u;
-        if ((token.length != 2u) || !log_token_number(token, HEX, BYTE_MAX, &byte)) {
+        uint32_t byte = 0;
+        if ((token.length != 2) || !log_token_number(token, HEX, BYTE_MAX, &byte)) {
             return "the data is shorter than its length says";
         }
-        if (i < (uint32_t)DATA_MAX) {
+        if (i < DATA_MAX) {
             frame->data[i] = (uint8_t)byte;
         }
     }
@@ -130,12 +130,12 @@ static const char *parse_data(const char *at, const char *end, hal_can_frame_t *
 
 /** Time stamps that keep going backwards are differences. */
 static const char *check_order(candump_screen_t *screen, uint64_t stamp_us) {
-    if (screen->lines < (uint32_t)FIRST_LINES) {
+    if (screen->lines < FIRST_LINES) {
         screen->lines++;
-        screen->backward += (stamp_us < screen->last_us) ? 1u : 0u;
+        screen->backward += (stamp_us < screen->last_us) ? 1 : 0;
         screen->last_us = stamp_us;
     }
-    return (screen->backward > (uint32_t)BACKWARD_MAX)
+    return (screen->backward > BACKWARD_MAX)
                ? "the time stamps are differences (candump -t d): record it with candump -t a or candump -l"
                : NULL;
 }

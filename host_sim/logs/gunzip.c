@@ -12,10 +12,10 @@ void gunzip_init(gunzip_t *gunzip) {
 
 /** Read more behind the bytes that are not used yet. @return false: a failure of the source */
 static bool refill(gunzip_t *gunzip, gunzip_source_fn *source, void *ctx) {
-    if (gunzip->begin > 0u) {
+    if (gunzip->begin > 0) {
         (void)memmove(gunzip->buffer, &gunzip->buffer[gunzip->begin], gunzip->end - gunzip->begin);
         gunzip->end -= gunzip->begin;
-        gunzip->begin = 0u;
+        gunzip->begin = 0;
     }
     const ssize_t count = source(ctx, &gunzip->buffer[gunzip->end], GUNZIP_BUFFER_SIZE - gunzip->end);
     if (count < 0) {
@@ -28,12 +28,12 @@ static bool refill(gunzip_t *gunzip, gunzip_source_fn *source, void *ctx) {
 
 /** Read the first bytes and tell what they are. @return false: a failure of the source, or no memory */
 static bool begin(gunzip_t *gunzip, gunzip_source_fn *source, void *ctx, const char **wrong) {
-    while ((gunzip->end < (size_t)MAGIC_SIZE) && !gunzip->at_end) {
+    while ((gunzip->end < MAGIC_SIZE) && !gunzip->at_end) {
         if (!refill(gunzip, source, ctx)) {
             return false;
         }
     }
-    gunzip->is_packed = (gunzip->end >= (size_t)MAGIC_SIZE) && (memcmp(gunzip->buffer, magic, MAGIC_SIZE) == 0);
+    gunzip->is_packed = (gunzip->end >= MAGIC_SIZE) && (memcmp(gunzip->buffer, magic, MAGIC_SIZE) == 0);
     if (gunzip->is_packed && (inflateInit2(&gunzip->stream, WINDOW_BITS_OF_GZIP) != Z_OK)) {
         gunzip->is_packed = false;
         *wrong = "no memory to unpack it";
@@ -46,7 +46,7 @@ static bool begin(gunzip_t *gunzip, gunzip_source_fn *source, void *ctx, const c
 /** Hand out bytes that are not compressed. */
 static ssize_t read_plain(gunzip_t *gunzip, gunzip_source_fn *source, void *ctx, void *bytes, size_t size) {
     size_t count = gunzip->end - gunzip->begin;
-    if (count == 0u) {
+    if (count == 0) {
         return gunzip->at_end ? 0 : source(ctx, bytes, size);
     }
     count = (count < size) ? count : size;
@@ -76,13 +76,13 @@ static ssize_t read_packed(gunzip_t *gunzip, gunzip_source_fn *source, void *ctx
                            const char **wrong) {
     for (;;) {
         if (gunzip->begin < gunzip->end) {
-            size_t count = 0u;
+            size_t count = 0;
             const int result = unpack(gunzip, bytes, size, &count);
             if ((result != Z_OK) && (result != Z_STREAM_END) && (result != Z_BUF_ERROR)) {
                 *wrong = "the gzip data is damaged";
                 return -1;
             }
-            if (count > 0u) {
+            if (count > 0) {
                 return (ssize_t)count;
             }
         } else if (gunzip->at_end) {

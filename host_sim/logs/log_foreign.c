@@ -32,13 +32,13 @@ typedef struct {
 
 #define BEGINS(text, name, convert)                                                                                    \
     {                                                                                                                  \
-        (text), sizeof(text) - 1u, {                                                                                   \
+        (text), sizeof(text) - 1, {                                                                                    \
             (name), (convert)                                                                                          \
         }                                                                                                              \
     }
 
 void log_foreign_advice(text_t *text, const log_foreign_t *format, const char *path) {
-    static const size_t path_max = 150u;
+    static const size_t path_max = 150;
     const char *name = (strlen(path) > path_max) ? "FILE" : path;
     text_add(text, "%s; ", format->name);
     for (const char *at = format->convert; *at != '\0'; at++) {
@@ -71,7 +71,7 @@ const log_foreign_t *log_foreign_binary(const char *bytes, size_t size) {
         BEGINS("\xFF\xFE", "text in UTF-16", "convert it: iconv -f UTF-16 -t UTF-8 @ > @.log"),
         BEGINS("\xFE\xFF", "text in UTF-16", "convert it: iconv -f UTF-16 -t UTF-8 @ > @.log"),
     };
-    for (size_t i = 0u; i < sizeof beginnings / sizeof beginnings[0]; i++) {
+    for (size_t i = 0; i < sizeof beginnings / sizeof beginnings[0]; i++) {
         if ((size >= beginnings[i].size) && (memcmp(bytes, beginnings[i].bytes, beginnings[i].size) == 0)) {
             return &beginnings[i].format;
         }
@@ -80,9 +80,9 @@ const log_foreign_t *log_foreign_binary(const char *bytes, size_t size) {
 }
 
 static size_t count_of(const char *line, size_t length, char character) {
-    size_t count = 0u;
-    for (size_t i = 0u; i < length; i++) {
-        count += (line[i] == character) ? 1u : 0u;
+    size_t count = 0;
+    for (size_t i = 0; i < length; i++) {
+        count += (line[i] == character) ? 1 : 0;
     }
     return count;
 }
@@ -92,16 +92,16 @@ static bool is_plain_screen(const char *line, size_t length) {
     const char *at = line;
     const char *end = &line[length];
     (void)log_token_next(&at, end);
-    uint32_t id = 0u;
-    const bool has_id = log_token_number(log_token_next(&at, end), 16u, UINT32_MAX - 1u, &id);
+    uint32_t id = 0;
+    const bool has_id = log_token_number(log_token_next(&at, end), 16, UINT32_MAX - 1, &id);
     const log_token_t size = log_token_next(&at, end);
-    return has_id && (size.length >= 3u) && (size.at[0] == '[') && (size.at[size.length - 1u] == ']');
+    return has_id && (size.length >= 3) && (size.at[0] == '[') && (size.at[size.length - 1] == ']');
 }
 
 static bool has(const char *line, size_t length, const char *text) {
     const size_t size = strlen(text);
     bool found = false;
-    for (size_t at = 0u; !found && (at + size <= length); at++) {
+    for (size_t at = 0; !found && (at + size <= length); at++) {
         found = strncasecmp(&line[at], text, size) == 0;
     }
     return found;
@@ -109,7 +109,7 @@ static bool has(const char *line, size_t length, const char *text) {
 
 /** The first lines of PEAK's first version, which does not name itself: comments. */
 static bool is_old_trc(const char *line, size_t length) {
-    return (length > 0u) && (line[0] == ';') &&
+    return (length > 0) && (line[0] == ';') &&
            (has(line, length, ";####") || has(line, length, "Start time:") || has(line, length, "PCAN"));
 }
 
@@ -126,7 +126,7 @@ const log_foreign_t *log_foreign_text(const char *line, size_t length) {
     static const log_foreign_t old_trc = {"a PEAK TRC log", CAN_LOGCONVERT};
     static const log_foreign_t csv = {"a CSV file",
                                       "make it one line a frame: (seconds.micros) can0 43F#0000000000000011"};
-    for (size_t i = 0u; i < sizeof beginnings / sizeof beginnings[0]; i++) {
+    for (size_t i = 0; i < sizeof beginnings / sizeof beginnings[0]; i++) {
         if ((length >= beginnings[i].size) && (strncasecmp(line, beginnings[i].bytes, beginnings[i].size) == 0)) {
             return &beginnings[i].format;
         }
@@ -137,7 +137,7 @@ const log_foreign_t *log_foreign_text(const char *line, size_t length) {
     if (is_plain_screen(line, length)) {
         return &plain_screen;
     }
-    static const size_t columns = 3u;
+    static const size_t columns = 3;
     const bool is_csv =
         (line[0] != '(') && ((count_of(line, length, ',') >= columns) || (count_of(line, length, ';') >= columns));
     return is_csv ? &csv : NULL;

@@ -35,8 +35,8 @@ bool log_token_is(log_token_t token, const char *text) {
 }
 
 bool log_token_number(log_token_t token, uint32_t base, uint32_t highest, uint32_t *number) {
-    uint64_t value = 0u;
-    for (size_t i = 0u; i < token.length; i++) {
+    uint64_t value = 0;
+    for (size_t i = 0; i < token.length; i++) {
         const uint32_t digit = hex_digit(token.at[i]);
         if ((digit >= base) || (value > highest)) {
             return false;
@@ -44,27 +44,27 @@ bool log_token_number(log_token_t token, uint32_t base, uint32_t highest, uint32
         value = (value * base) + digit;
     }
     *number = (uint32_t)value;
-    return (token.length > 0u) && (value <= highest);
+    return (token.length > 0) && (value <= highest);
 }
 
 bool log_token_seconds(log_token_t token, uint64_t *us) {
-    uint64_t value = 0u;
-    size_t i = 0u;
-    for (; (i < token.length) && (hex_digit(token.at[i]) < (uint32_t)DECIMAL); i++) {
+    uint64_t value = 0;
+    size_t i = 0;
+    for (; (i < token.length) && (hex_digit(token.at[i]) < DECIMAL); i++) {
         value = (value * DECIMAL) + hex_digit(token.at[i]);
-        if (i >= (size_t)SECONDS_DIGITS_MAX) {
+        if (i >= SECONDS_DIGITS_MAX) {
             return false;
         }
     }
-    const bool has_seconds = i > 0u;
-    i += ((i < token.length) && (token.at[i] == '.')) ? 1u : 0u;
-    size_t decimals = 0u;
-    for (; (i < token.length) && (hex_digit(token.at[i]) < (uint32_t)DECIMAL); i++) {
-        value = (decimals < (size_t)MICRO_DIGITS) ? ((value * DECIMAL) + hex_digit(token.at[i])) : value;
+    const bool has_seconds = i > 0;
+    i += ((i < token.length) && (token.at[i] == '.')) ? 1 : 0;
+    size_t decimals = 0;
+    for (; (i < token.length) && (hex_digit(token.at[i]) < DECIMAL); i++) {
+        value = (decimals < MICRO_DIGITS) ? ((value * DECIMAL) + hex_digit(token.at[i])) : value;
         decimals++;
     }
-    const bool good = has_seconds && (i == token.length) && (decimals <= (size_t)DECIMALS_MAX);
-    for (; decimals < (size_t)MICRO_DIGITS; decimals++) {
+    const bool good = has_seconds && (i == token.length) && (decimals <= DECIMALS_MAX);
+    for (; decimals < MICRO_DIGITS; decimals++) {
         value *= DECIMAL;
     }
     *us = value;

@@ -13,15 +13,15 @@ static void write_line(sent_log_t *log, const sent_log_frame_t *sent) {
 }
 
 static void write_waiting(sent_log_t *log) {
-    for (size_t i = 0u; i < log->waiting_count; i++) {
+    for (size_t i = 0; i < log->waiting_count; i++) {
         write_line(log, &log->waiting[i]);
     }
-    log->waiting_count = 0u;
+    log->waiting_count = 0;
 }
 
 /** Whether the oldest waiting frame, and so every one behind it, has to go on waiting. */
 static bool must_wait(const sent_log_t *log) {
-    for (size_t i = 0u; i < log->waiting_count; i++) {
+    for (size_t i = 0; i < log->waiting_count; i++) {
         if (log->interfaces[log->waiting[i].side][0] == '\0') {
             return true;
         }
@@ -43,12 +43,12 @@ void sent_log_heard(sent_log_t *log, hal_can_side_t side, const char *interface,
 /** Give every side without a name one that no other side has. */
 static void name_interfaces(sent_log_t *log) {
     static const char *const made_up[HAL_CAN_SIDES] = {"can0", "can1"};
-    for (uint32_t side = 0u; side < (uint32_t)HAL_CAN_SIDES; side++) {
-        const char *other = log->interfaces[HAL_CAN_SIDES - 1u - side];
+    for (uint32_t side = 0; side < HAL_CAN_SIDES; side++) {
+        const char *other = log->interfaces[HAL_CAN_SIDES - 1 - side];
         const char *name = (strcmp(other, made_up[0]) == 0) ? made_up[1] : made_up[0];
         if (log->interfaces[side][0] == '\0') {
             note("no frame was received on the %s side: frames sent there are logged as %s",
-                 (side == (uint32_t)HAL_CAN_VEHICLE) ? "vehicle" : "AI", name);
+                 (side == HAL_CAN_VEHICLE) ? "vehicle" : "AI", name);
             sent_log_heard(log, (hal_can_side_t)side, name, strlen(name));
         }
     }
@@ -63,7 +63,7 @@ void sent_log_add(sent_log_t *log, hal_can_side_t side, const hal_can_frame_t *f
     if (log->waiting_count == SENT_LOG_WAITING_MAX) {
         name_interfaces(log);
     }
-    if ((log->waiting_count > 0u) || (log->interfaces[side][0] == '\0')) {
+    if ((log->waiting_count > 0) || (log->interfaces[side][0] == '\0')) {
         log->waiting[log->waiting_count] = sent;
         log->waiting_count++;
     } else {
@@ -72,7 +72,7 @@ void sent_log_add(sent_log_t *log, hal_can_side_t side, const hal_can_frame_t *f
 }
 
 void sent_log_finish(sent_log_t *log) {
-    if (log->waiting_count > 0u) {
+    if (log->waiting_count > 0) {
         name_interfaces(log);
     }
 }

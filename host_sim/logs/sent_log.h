@@ -27,12 +27,12 @@ typedef struct {
     uint8_t data[8];
 } sent_log_frame_t;
 
-_Static_assert(sizeof(sent_log_frame_t) <= 32u, "waiting frames take 1 MiB at most");
+_Static_assert(sizeof(sent_log_frame_t) <= 32, "waiting frames take 1 MiB at most");
 
 /** The log. All zero but for `output`: nothing received yet. Some 1 MiB: not for the stack. */
 typedef struct {
-    output_t *output;                                           /**< NULL: nothing is written */
-    char interfaces[HAL_CAN_SIDES][CANDUMP_INTERFACE_MAX + 1u]; /**< "" = not known yet */
+    output_t *output;                                          /**< NULL: nothing is written */
+    char interfaces[HAL_CAN_SIDES][CANDUMP_INTERFACE_MAX + 1]; /**< "" = not known yet */
     size_t waiting_count;
     sent_log_frame_t waiting[SENT_LOG_WAITING_MAX];
 } sent_log_t;

@@ -23,7 +23,7 @@ typedef struct {
     bool has_base;     /**< a line "base ..." was read, or its absence noted: hexadecimal, absolute */
     bool is_decimal;   /**< identifiers and data are decimal numbers */
     bool is_relative;  /**< a time stamp counts from the line before */
-    char interface[CANDUMP_INTERFACE_MAX + 1u];
+    char interface[CANDUMP_INTERFACE_MAX + 1];
 } vector_asc_t;
 
 /** Whether a line can be the first one of such a log. */

@@ -120,8 +120,8 @@ typedef struct {
     uint64_t engaged_us; /**< when the last engagement began */
     size_t row_count;
     monitor_row_t rows[MONITOR_ROWS_MAX];
-    uint8_t row_of[HAL_CAN_SIDES][AGV_ID_MAX + 1u]; /**< index + 1; 0: none */
-    uint8_t watched[AGV_MSG_COUNT][AGV_DLC];        /**< bits whose change is listed */
+    uint8_t row_of[HAL_CAN_SIDES][AGV_ID_MAX + 1]; /**< index + 1; 0: none */
+    uint8_t watched[AGV_MSG_COUNT][AGV_DLC];       /**< bits whose change is listed */
     size_t other_count;
     monitor_other_t others[MONITOR_OTHERS_MAX];
     uint64_t others_uncounted; /**< frames of identifiers for which there was no room */

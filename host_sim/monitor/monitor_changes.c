@@ -16,7 +16,7 @@ static bool is_listed(const signal_info_t *info) {
 static bool differs(uint32_t message, const uint8_t a[AGV_DLC], const uint8_t b[AGV_DLC]) {
     signal_value_t before;
     signal_value_t now;
-    for (size_t i = 0u; signals_read(message, i, a, &before) && signals_read(message, i, b, &now); i++) {
+    for (size_t i = 0; signals_read(message, i, a, &before) && signals_read(message, i, b, &now); i++) {
         if (is_listed(signals_info(message, i)) && (before.raw != now.raw)) {
             return true;
         }
@@ -25,13 +25,13 @@ static bool differs(uint32_t message, const uint8_t a[AGV_DLC], const uint8_t b[
 }
 
 void monitor_changes_make(monitor_t *monitor) {
-    static const uint8_t zero[AGV_DLC] = {0u};
-    for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
-        for (uint32_t bit = 0u; bit < AGV_DLC * (uint32_t)BITS_PER_BYTE; bit++) {
-            uint8_t one[AGV_DLC] = {0u};
+    static const uint8_t zero[AGV_DLC] = {0};
+    for (uint32_t message = 0; message < AGV_MSG_COUNT; message++) {
+        for (uint32_t bit = 0; bit < AGV_DLC * (uint32_t)BITS_PER_BYTE; bit++) {
+            uint8_t one[AGV_DLC] = {0};
             const uint32_t byte = bit / BITS_PER_BYTE;
             one[byte] = (uint8_t)(1u << (bit % BITS_PER_BYTE));
-            monitor->watched[message][byte] |= differs(message, zero, one) ? one[byte] : 0u;
+            monitor->watched[message][byte] |= differs(message, zero, one) ? one[byte] : 0;
         }
     }
 }
@@ -39,7 +39,7 @@ void monitor_changes_make(monitor_t *monitor) {
 static void list_alarm(monitor_t *monitor, const monitor_row_t *row, const signal_info_t *info, bool is_set,
                        uint64_t t_us) {
     const unsigned led_code = agv_fault_led_code(info->fault);
-    if (is_set && (led_code > 0u)) {
+    if (is_set && (led_code > 0)) {
         monitor_say(monitor, t_us, MONITOR_BAD, monitor_sender(monitor, row), "alarm %s, LED code %u", info->name,
                     led_code);
     } else {
@@ -60,10 +60,10 @@ static void list_one(monitor_t *monitor, const monitor_row_t *row, size_t index,
         !signals_read(row->message, index, data, &now)) {
         return;
     }
-    const bool is_first = row->count == 0u;
+    const bool is_first = row->count == 0;
     if (info->kind == SIGNAL_ALARM) {
-        if ((now.raw != 0u) != (!is_first && (before.raw != 0u))) {
-            list_alarm(monitor, row, info, now.raw != 0u, t_us);
+        if ((now.raw != 0) != (!is_first && (before.raw != 0))) {
+            list_alarm(monitor, row, info, now.raw != 0, t_us);
         }
         return;
     }
@@ -78,28 +78,28 @@ static void list_one(monitor_t *monitor, const monitor_row_t *row, size_t index,
 
 /** Whether there is room in this second; the first one that has none is told. */
 static bool may_list(monitor_t *monitor, monitor_row_t *row, uint64_t t_us) {
-    if ((row->listed == 0u) || (t_us > row->listed_us + (uint64_t)US_PER_S)) {
+    if ((row->listed == 0) || (t_us > row->listed_us + (uint64_t)US_PER_S)) {
         row->listed_us = t_us;
-        row->listed = 0u;
+        row->listed = 0;
     }
-    row->listed = (uint8_t)((row->listed < UINT8_MAX) ? row->listed + 1u : row->listed);
-    if (row->listed == (uint8_t)LISTED_PER_S + 1u) {
+    row->listed = (uint8_t)((row->listed < UINT8_MAX) ? row->listed + 1 : row->listed);
+    if (row->listed == LISTED_PER_S + 1) {
         monitor_say(monitor, t_us, MONITOR_WARN, monitor_sender(monitor, row),
                     "%03Xh changes more than %d times a second: not listed", (unsigned)row->id, (int)LISTED_PER_S);
     }
-    return row->listed <= (uint8_t)LISTED_PER_S;
+    return row->listed <= LISTED_PER_S;
 }
 
 void monitor_changes_list(monitor_t *monitor, monitor_row_t *row, const uint8_t data[AGV_DLC], uint64_t t_us) {
     const uint8_t *watched = monitor->watched[row->message];
-    bool has_changed = row->count == 0u;
-    for (size_t i = 0u; i < AGV_DLC; i++) {
-        has_changed = has_changed || (((row->data[i] ^ data[i]) & watched[i]) != 0u);
+    bool has_changed = row->count == 0;
+    for (size_t i = 0; i < AGV_DLC; i++) {
+        has_changed = has_changed || (((row->data[i] ^ data[i]) & watched[i]) != 0);
     }
     if (!has_changed || !may_list(monitor, row, t_us)) {
         return;
     }
-    for (size_t i = 0u; i < signals_count(row->message); i++) {
+    for (size_t i = 0; i < signals_count(row->message); i++) {
         list_one(monitor, row, i, data, t_us);
     }
 }
@@ -107,27 +107,27 @@ void monitor_changes_list(monitor_t *monitor, monitor_row_t *row, const uint8_t 
 /** Put an alarm in its place by rank, unless it is there already. @return how many there are now */
 static size_t put_alarm(const monitor_t *monitor, monitor_alarm_t *alarms, size_t count, size_t room,
                         monitor_alarm_t alarm) {
-    size_t place = 0u;
+    size_t place = 0;
     while ((place < count) && (alarms[place].fault < alarm.fault)) {
         place++;
     }
     if ((place == room) || ((place < count) && (alarms[place].fault == alarm.fault))) {
         return count;
     }
-    const size_t kept = (count < room) ? count : room - 1u;
-    memmove(&alarms[place + 1u], &alarms[place], (kept - place) * sizeof alarms[0]);
+    const size_t kept = (count < room) ? count : room - 1;
+    memmove(&alarms[place + 1], &alarms[place], (kept - place) * sizeof alarms[0]);
     alarm.led_code = agv_fault_led_code(alarm.fault);
     alarm.is_trip = agv_config_is_trip(&monitor->config, (uint32_t)alarm.fault);
     alarms[place] = alarm;
-    return kept + 1u;
+    return kept + 1;
 }
 
 static size_t put_reported(const monitor_t *monitor, monitor_alarm_t *alarms, size_t count, size_t room,
                            const monitor_row_t *row) {
     signal_value_t value;
-    for (size_t i = 0u; (row->count > 0u) && signals_read(row->message, i, row->data, &value); i++) {
+    for (size_t i = 0; (row->count > 0) && signals_read(row->message, i, row->data, &value); i++) {
         const signal_info_t *info = signals_info(row->message, i);
-        if ((info->kind == SIGNAL_ALARM) && (value.raw != 0u)) {
+        if ((info->kind == SIGNAL_ALARM) && (value.raw != 0)) {
             const monitor_alarm_t alarm = {.fault = info->fault, .is_fresh = !row->is_late && !row->is_silent};
             count = put_alarm(monitor, alarms, count, room, alarm);
         }
@@ -136,11 +136,11 @@ static size_t put_reported(const monitor_t *monitor, monitor_alarm_t *alarms, si
 }
 
 size_t monitor_alarms(const monitor_t *monitor, monitor_alarm_t *alarms, size_t room) {
-    size_t count = 0u;
-    for (size_t i = 0u; i < monitor->row_count; i++) {
+    size_t count = 0;
+    for (size_t i = 0; i < monitor->row_count; i++) {
         count = put_reported(monitor, alarms, count, room, &monitor->rows[i]);
     }
-    for (uint32_t fault = 0u; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
+    for (uint32_t fault = 0; fault < AGV_FAULT_COUNT; fault++) {
         if (agv_fault_is_in(&monitor->supervisor.faults, fault)) {
             const monitor_alarm_t alarm = {.fault = (agv_fault_t)fault, .is_fresh = true};
             count = put_alarm(monitor, alarms, count, room, alarm);

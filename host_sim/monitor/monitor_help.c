@@ -30,7 +30,7 @@ static const line_t help_lines[] = {
 enum { LEFT = 2, RIGHT = 14 };
 
 void monitor_help_draw(monitor_view_t *view, int y) {
-    for (size_t i = 0u; i < sizeof help_lines / sizeof help_lines[0]; i++) {
+    for (size_t i = 0; i < sizeof help_lines / sizeof help_lines[0]; i++) {
         (void)monitor_view_put(view, y + (int)i, LEFT, STYLE_BOLD, help_lines[i].left);
         (void)monitor_view_put(view, y + (int)i, RIGHT, STYLE_PLAIN, help_lines[i].right);
     }

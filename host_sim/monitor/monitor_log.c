@@ -18,5 +18,5 @@ size_t monitor_log_length(const monitor_log_t *log) {
 }
 
 const monitor_entry_t *monitor_log_back(const monitor_log_t *log, size_t back) {
-    return (back < monitor_log_length(log)) ? &log->ring[(log->added - 1u - back) % MONITOR_LOG_ENTRIES] : NULL;
+    return (back < monitor_log_length(log)) ? &log->ring[(log->added - 1 - back) % MONITOR_LOG_ENTRIES] : NULL;
 }

@@ -17,7 +17,7 @@ enum { LINES_ABOVE_TABLE = 4, LINES_BESIDES = LINES_ABOVE_TABLE + 3 };
 enum { ROOMY = 4 };
 
 static bool is_roomy(const monitor_t *monitor, int height) {
-    return height - (int)LINES_BESIDES - (int)monitor->row_count - 2 >= (int)ROOMY;
+    return height - (int)LINES_BESIDES - (int)monitor->row_count - 2 >= ROOMY;
 }
 
 static int label(monitor_view_t *view, int y, const char *text) {
@@ -39,10 +39,10 @@ static void write_time(char text[CELL], uint64_t us) {
 }
 
 static int put_interfaces(monitor_view_t *view, int x, const monitor_t *monitor) {
-    for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
+    for (int side = 0; side < HAL_CAN_SIDES; side++) {
         const char *name = monitor->given.interfaces[side];
         if (name != NULL) {
-            x = monitor_view_print(view, 0, x, STYLE_BAR, " %s%s%s ", name, (side == (int)HAL_CAN_AI) ? " (ai)" : "",
+            x = monitor_view_print(view, 0, x, STYLE_BAR, " %s%s%s ", name, (side == HAL_CAN_AI) ? " (ai)" : "",
                                    monitor->is_down[side] ? " DOWN" : "");
         }
     }
@@ -136,7 +136,7 @@ static void draw_supervisor(monitor_view_t *view, int y, const monitor_t *monito
     if (reason != NULL) {
         x = monitor_view_print(view, y, x, STYLE_BAD, ": %s", reason);
         const unsigned code = agv_fault_led_code(supervisor->first_reason);
-        if (!supervisor->has_led && (code > 0u)) {
+        if (!supervisor->has_led && (code > 0)) {
             x = monitor_view_print(view, y, x, STYLE_BAD, "  LED code %u", code);
         }
     }
@@ -153,7 +153,7 @@ static int put_value(monitor_view_t *view, int y, int x, const monitor_t *monito
     const uint8_t *data = monitor_payload(monitor, message);
     signal_value_t value;
     char text[SIGNALS_VALUE_SIZE];
-    for (size_t i = 0u; (data != NULL) && signals_read(message, i, data, &value); i++) {
+    for (size_t i = 0; (data != NULL) && signals_read(message, i, data, &value); i++) {
         const signal_info_t *info = signals_info(message, i);
         if (strcmp(info->name, name) == 0) {
             signals_value_text(text, info, &value);
@@ -181,13 +181,13 @@ static void draw_alarms(monitor_view_t *view, int y, const monitor_t *monitor) {
     monitor_alarm_t alarms[ALARMS_MAX];
     const size_t count = monitor_alarms(monitor, alarms, ALARMS_MAX);
     int x = label(view, y, "alarms");
-    if (count == 0u) {
+    if (count == 0) {
         (void)monitor_view_put(view, y, x, STYLE_DIM, "none");
     }
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         const monitor_style_t style = !alarms[i].is_fresh ? STYLE_DIM : (alarms[i].is_trip ? STYLE_BAD : STYLE_WARN);
-        x = monitor_view_print(view, y, x, style, "%s%s", (i > 0u) ? ", " : "", agv_fault_name(alarms[i].fault));
-        if (alarms[i].led_code > 0u) {
+        x = monitor_view_print(view, y, x, style, "%s%s", (i > 0) ? ", " : "", agv_fault_name(alarms[i].fault));
+        if (alarms[i].led_code > 0) {
             x = monitor_view_print(view, y, x, style, " (LED %u)", (unsigned)alarms[i].led_code);
         }
     }
@@ -196,20 +196,20 @@ static void draw_alarms(monitor_view_t *view, int y, const monitor_t *monitor) {
 static void draw_others(monitor_view_t *view, int y, const monitor_t *monitor) {
     int x = label(view, y, "also seen");
     const int begin = x;
-    if (monitor->supervisor.heard_count > 0u) {
+    if (monitor->supervisor.heard_count > 0) {
         x = monitor_view_print(view, y, x, STYLE_PLAIN, "%03Xh status frame  ",
                                (unsigned)monitor->config.status_frame_id);
     }
-    for (size_t i = 0u; (i < monitor->other_count) && (x < view->width); i++) {
+    for (size_t i = 0; (i < monitor->other_count) && (x < view->width); i++) {
         const monitor_other_t *other = &monitor->others[i];
         const uint64_t rate = monitor_rate(monitor, other->count, other->counts);
-        x = monitor_view_print(view, y, x, (rate > 0u) ? STYLE_PLAIN : STYLE_DIM, "%0*" PRIX32 "h %" PRIu64 "/s  ",
+        x = monitor_view_print(view, y, x, (rate > 0) ? STYLE_PLAIN : STYLE_DIM, "%0*" PRIX32 "h %" PRIu64 "/s  ",
                                other->is_extended ? 8 : 3, other->id, rate);
     }
     const uint64_t numbers[] = {monitor->others_uncounted, monitor->rejected, monitor->errors, monitor->lost};
     static const char *const words[] = {"frames of more", "rejected", "error frames", "lost by this program"};
-    for (size_t i = 0u; i < sizeof numbers / sizeof numbers[0]; i++) {
-        if (numbers[i] > 0u) {
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        if (numbers[i] > 0) {
             x = monitor_view_print(view, y, x, STYLE_WARN, "%" PRIu64 " %s  ", numbers[i], words[i]);
         }
     }
@@ -228,7 +228,7 @@ static monitor_style_t style_of_level(monitor_level_t level) {
 
 static void draw_log_title(monitor_view_t *view, int y, const monitor_page_t *page) {
     const int x = label(view, y, "transitions");
-    if (page->scrolled > 0u) {
+    if (page->scrolled > 0) {
         (void)monitor_view_print(view, y, x, STYLE_WARN, "%zu newer below", page->scrolled);
     }
 }
@@ -236,7 +236,7 @@ static void draw_log_title(monitor_view_t *view, int y, const monitor_page_t *pa
 static void draw_log(monitor_view_t *view, int y, const monitor_t *monitor, const monitor_page_t *page) {
     const int lines = view->height - 1 - y;
     const size_t length = monitor_log_length(&monitor->log);
-    const size_t left = (length > page->scrolled) ? length - page->scrolled : 0u;
+    const size_t left = (length > page->scrolled) ? length - page->scrolled : 0;
     const int shown = (left < (size_t)((lines > 0) ? lines : 0)) ? (int)left : lines;
     for (int i = 0; i < shown; i++) {
         const monitor_entry_t *entry = monitor_log_back(&monitor->log, page->scrolled + (size_t)(shown - 1 - i));

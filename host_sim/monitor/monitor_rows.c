@@ -33,10 +33,10 @@ static void add_row(monitor_t *monitor, const agv_ids_t *ids, hal_can_side_t sid
 void monitor_rows_make(monitor_t *monitor) {
     agv_ids_t ids;
     agv_config_ids(&monitor->config, &ids);
-    for (uint32_t message = 0u; monitor->given.is_gateway && (message < AGV_COMMAND_COUNT); message++) {
+    for (uint32_t message = 0; monitor->given.is_gateway && (message < AGV_COMMAND_COUNT); message++) {
         add_row(monitor, &ids, HAL_CAN_AI, message);
     }
-    for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
+    for (uint32_t message = 0; message < AGV_MSG_COUNT; message++) {
         add_row(monitor, &ids, HAL_CAN_VEHICLE, message);
     }
 }
@@ -48,7 +48,7 @@ static void say(monitor_t *monitor, const monitor_row_t *row, uint64_t t_us, mon
 }
 
 static bool is_vcu(const monitor_row_t *row) {
-    return (row->message == (uint32_t)AGV_MSG_VEHICLE_STATUS) && (row->side == HAL_CAN_VEHICLE);
+    return (row->message == AGV_MSG_VEHICLE_STATUS) && (row->side == HAL_CAN_VEHICLE);
 }
 
 static bool is_command(const monitor_row_t *row) {
@@ -57,7 +57,7 @@ static bool is_command(const monitor_row_t *row) {
 
 /** Whether a deadline counts now: that of a command while engaged (SUP-3), that of 43Fh by choice in manual, too (SUP-8). */
 static bool counts(const monitor_t *monitor, const monitor_row_t *row) {
-    const bool in_manual = row->has_counter && (monitor->config.ai_lost_in_manual != (uint16_t)AGV_AI_LOST_WARN);
+    const bool in_manual = row->has_counter && (monitor->config.ai_lost_in_manual != AGV_AI_LOST_WARN);
     return !is_command(row) || monitor->engagement.is_engaged || in_manual;
 }
 
@@ -92,7 +92,7 @@ static void begin_silent(monitor_t *monitor, monitor_row_t *row) {
 
 /** Find whether a message is overdue. */
 static void find_late(monitor_t *monitor, monitor_row_t *row) {
-    if ((row->count == 0u) || (monitor->now_us <= due_us(monitor, row))) {
+    if ((row->count == 0) || (monitor->now_us <= due_us(monitor, row))) {
         return;
     }
     if (!counts(monitor, row) && !row->is_silent) {
@@ -105,21 +105,21 @@ static void find_late(monitor_t *monitor, monitor_row_t *row) {
 }
 
 void monitor_rows_time(monitor_t *monitor) {
-    for (size_t i = 0u; i < monitor->row_count; i++) {
+    for (size_t i = 0; i < monitor->row_count; i++) {
         if (is_vcu(&monitor->rows[i])) {
             find_late(monitor, &monitor->rows[i]); /* first: it ends the engagement, for which the commands are due */
         }
     }
-    for (size_t i = 0u; i < monitor->row_count; i++) {
+    for (size_t i = 0; i < monitor->row_count; i++) {
         find_late(monitor, &monitor->rows[i]);
     }
 }
 
 void monitor_rows_half(monitor_t *monitor) {
-    for (size_t i = 0u; i < monitor->row_count; i++) {
+    for (size_t i = 0; i < monitor->row_count; i++) {
         monitor_row_t *row = &monitor->rows[i];
         row->worst_us[1] = row->worst_us[0];
-        row->worst_us[0] = 0u;
+        row->worst_us[0] = 0;
         row->was_late[1] = row->was_late[0];
         row->was_late[0] = row->is_late;
         row->counts[1] = row->counts[0];
@@ -128,7 +128,7 @@ void monitor_rows_half(monitor_t *monitor) {
 }
 
 static void take_gap(monitor_row_t *row, uint64_t gap_us) {
-    const uint32_t gap = (gap_us < MONITOR_NO_GAP) ? (uint32_t)gap_us : MONITOR_NO_GAP - 1u;
+    const uint32_t gap = (gap_us < MONITOR_NO_GAP) ? (uint32_t)gap_us : MONITOR_NO_GAP - 1;
     row->gap_min_us = (gap < row->gap_min_us) ? gap : row->gap_min_us;
     row->gap_max_us = (gap > row->gap_max_us) ? gap : row->gap_max_us;
     row->worst_us[0] = (gap > row->worst_us[0]) ? gap : row->worst_us[0];
@@ -160,9 +160,9 @@ static void follow_engagement(monitor_t *monitor, const monitor_row_t *row, uint
 }
 
 void monitor_rows_take(monitor_t *monitor, monitor_row_t *row, const uint8_t data[AGV_DLC], uint64_t t_us) {
-    const uint64_t gap_us = (t_us > row->last_us) ? t_us - row->last_us : 0u;
+    const uint64_t gap_us = (t_us > row->last_us) ? t_us - row->last_us : 0;
     find_late(monitor, row);
-    if (row->count > 0u) {
+    if (row->count > 0) {
         take_gap(row, gap_us);
     }
     if (row->is_late || row->is_silent) {
@@ -182,10 +182,10 @@ void monitor_rows_take(monitor_t *monitor, monitor_row_t *row, const uint8_t dat
 }
 
 uint64_t monitor_age_us(const monitor_t *monitor, const monitor_row_t *row) {
-    if (row->count == 0u) {
-        return 0u;
+    if (row->count == 0) {
+        return 0;
     }
-    uint64_t age_us = (monitor->now_us > row->last_us) ? monitor->now_us - row->last_us : 0u;
+    uint64_t age_us = (monitor->now_us > row->last_us) ? monitor->now_us - row->last_us : 0;
     age_us = (row->worst_us[0] > age_us) ? row->worst_us[0] : age_us;
     return (row->worst_us[1] > age_us) ? row->worst_us[1] : age_us;
 }

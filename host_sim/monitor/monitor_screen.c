@@ -83,9 +83,9 @@ static void give_stderr_back(void) {
         (void)close(here.stderr_was);
         here.stderr_was = -1;
         (void)fseek(here.kept_back, 0, SEEK_SET);
-        for (size_t size = fread(text, 1u, sizeof text, here.kept_back); size > 0u;
-             size = fread(text, 1u, sizeof text, here.kept_back)) {
-            (void)fwrite(text, 1u, size, stderr);
+        for (size_t size = fread(text, 1, sizeof text, here.kept_back); size > 0;
+             size = fread(text, 1, sizeof text, here.kept_back)) {
+            (void)fwrite(text, 1, size, stderr);
         }
     }
     if (here.kept_back != NULL) {
@@ -186,7 +186,7 @@ int monitor_screen_key(void) {
         redraw();
         return MONITOR_KEY_RESIZE;
     }
-    for (size_t i = 0u; i < sizeof keys / sizeof keys[0]; i++) {
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
         if (keys[i].key == key) {
             return keys[i].means;
         }

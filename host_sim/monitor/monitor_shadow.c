@@ -22,7 +22,7 @@ static void discard(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame
 }
 
 monitor_shadow_t *monitor_shadow_new(const agv_config_t *config, session_observer_fn *fn, void *ctx, uint64_t t_us) {
-    monitor_shadow_t *shadow = calloc(1u, sizeof *shadow);
+    monitor_shadow_t *shadow = calloc(1, sizeof *shadow);
     if (shadow == NULL) {
         return NULL;
     }
@@ -30,10 +30,9 @@ monitor_shadow_t *monitor_shadow_new(const agv_config_t *config, session_observe
     const sim_hal_config_t hal = {.clock_start_ms = (uint32_t)t_ms, .watchdog_ms = config->watchdog_period_ms};
     shadow->config = *config;
     shadow->config.shadow = (uint16_t)AGV_SHADOW_ON;
-    shadow->next_ms = t_ms + 1u;
+    shadow->next_ms = t_ms + 1;
     agv_config_ids(&shadow->config, &shadow->ids);
-    sim_hal_init_direct(&shadow->hal, &hal, (config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? 2u : 1u, discard,
-                        NULL);
+    sim_hal_init_direct(&shadow->hal, &hal, (config->topology == AGV_TOPOLOGY_GATEWAY) ? 2 : 1, discard, NULL);
     session_init(&shadow->session, &shadow->hal);
     (void)session_observe(&shadow->session, fn, ctx);
     session_start(&shadow->session, &shadow->config, t_ms, (uint32_t)t_ms);
@@ -58,7 +57,7 @@ bool monitor_shadow_time(monitor_shadow_t *shadow, uint64_t t_us) {
 
 void monitor_shadow_frame(monitor_shadow_t *shadow, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
     const uint64_t t_ms = t_us / US_PER_MS;
-    const bool is_error = (frame->flags & HAL_CAN_ERROR) != 0u;
+    const bool is_error = (frame->flags & HAL_CAN_ERROR) != 0;
     if (!is_error && !message_id_is_heard(&shadow->ids, frame->id)) {
         return;
     }

@@ -17,7 +17,7 @@ enum { STATE_AT = 0, REASON_AT = 1, OUTPUT_AT = 2, CHECKSUM_AT = 4, PAGE_SHIFT =
 
 static uint64_t wait_us(const monitor_t *monitor) {
     const uint64_t periods_ms = (uint64_t)PERIODS * monitor->config.status_frame_period_ms;
-    return ((periods_ms > (uint64_t)WAIT_MS) ? periods_ms : (uint64_t)WAIT_MS) * US_PER_MS;
+    return ((periods_ms > WAIT_MS) ? periods_ms : (uint64_t)WAIT_MS) * US_PER_MS;
 }
 
 static const char *name_of(const monitor_t *monitor) {
@@ -45,7 +45,7 @@ static void say_state(monitor_t *monitor, uint64_t t_us, agv_state_t from, agv_s
 
 static void say_missing(monitor_t *monitor, uint64_t t_us, monitor_level_t level, const char *what, uint16_t missing) {
     char words[MISSING_TEXT_SIZE];
-    monitor_say(monitor, t_us, level, name_of(monitor), "%s%s%.100s", what, (missing != 0u) ? ", missing: " : "",
+    monitor_say(monitor, t_us, level, name_of(monitor), "%s%s%.100s", what, (missing != 0) ? ", missing: " : "",
                 missing_text(missing, words));
 }
 
@@ -60,11 +60,11 @@ static void say_fault(monitor_t *monitor, uint64_t t_us, agv_fault_t fault, agv_
 static void say_change(monitor_t *monitor, uint64_t t_us, const session_event_t *event) {
     const agv_event_t *recorded = &event->recorded;
     const char *name = agv_fault_name((agv_fault_t)recorded->a);
-    if (recorded->a >= (uint8_t)AGV_FAULT_COUNT) {
+    if (recorded->a >= AGV_FAULT_COUNT) {
         return;
     }
     if (!event->is_left_out) {
-        say_fault(monitor, t_us, (agv_fault_t)recorded->a, (agv_fault_class_t)recorded->b, recorded->c != 0u);
+        say_fault(monitor, t_us, (agv_fault_t)recorded->a, (agv_fault_class_t)recorded->b, recorded->c != 0);
     } else if (!monitor->flickers[recorded->a]) {
         monitor_say(monitor, t_us, MONITOR_WARN, name_of(monitor),
                     "fault %s changes more than %u times a second: not listed", name,
@@ -77,7 +77,7 @@ static void say_change(monitor_t *monitor, uint64_t t_us, const session_event_t 
 
 /** The faults that were raised before anything of the supervisor was shown. */
 static void say_active_faults(monitor_t *monitor, uint64_t t_us) {
-    for (uint32_t fault = 0u; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
+    for (uint32_t fault = 0; fault < AGV_FAULT_COUNT; fault++) {
         if (agv_fault_is_in(&monitor->supervisor.faults, fault)) {
             say_fault(monitor, t_us, (agv_fault_t)fault,
                       agv_config_is_trip(&monitor->config, fault) ? AGV_CLASS_TRIP : AGV_CLASS_WARN, true);
@@ -98,8 +98,8 @@ void monitor_event(monitor_t *monitor, const session_event_t *event, uint64_t t_
         say_change(monitor, t_us, event);
         break;
     case AGV_EVENT_RESET:
-        say_missing(monitor, t_us, (recorded->a != 0u) ? MONITOR_GOOD : MONITOR_WARN,
-                    (recorded->a != 0u) ? "reset accepted" : "reset refused", recorded->missing);
+        say_missing(monitor, t_us, (recorded->a != 0) ? MONITOR_GOOD : MONITOR_WARN,
+                    (recorded->a != 0) ? "reset accepted" : "reset refused", recorded->missing);
         break;
     case AGV_EVENT_STARTUP:
         say_missing(monitor, t_us, MONITOR_WARN, "start not possible yet", recorded->missing);
@@ -163,14 +163,14 @@ void monitor_supervisor_start(monitor_t *monitor) {
 }
 
 bool monitor_is_status(const monitor_t *monitor, hal_can_side_t side, const hal_can_frame_t *frame) {
-    return (side == HAL_CAN_VEHICLE) && (frame->flags == 0u) && (frame->length == AGV_DLC) && (frame->id != 0u) &&
+    return (side == HAL_CAN_VEHICLE) && (frame->flags == 0) && (frame->length == AGV_DLC) && (frame->id != 0) &&
            (frame->id == monitor->config.status_frame_id);
 }
 
 static uint32_t checksum_of(const uint8_t data[AGV_DLC]) {
-    uint32_t checksum = 0u;
-    for (uint32_t i = AGV_DLC; i > (uint32_t)CHECKSUM_AT; i--) {
-        checksum = (checksum << BITS) | data[i - 1u];
+    uint32_t checksum = 0;
+    for (uint32_t i = AGV_DLC; i > CHECKSUM_AT; i--) {
+        checksum = (checksum << BITS) | data[i - 1];
     }
     return checksum;
 }
@@ -200,8 +200,7 @@ static void begin_status(monitor_t *monitor, uint64_t t_us) {
 static void take_status(monitor_t *monitor, const uint8_t data[AGV_DLC], uint64_t t_us) {
     monitor_supervisor_t *supervisor = &monitor->supervisor;
     const agv_state_t state = (agv_state_t)data[STATE_AT];
-    const agv_fault_t reason =
-        (data[REASON_AT] < (uint8_t)AGV_FAULT_COUNT) ? (agv_fault_t)data[REASON_AT] : AGV_FAULT_NONE;
+    const agv_fault_t reason = (data[REASON_AT] < AGV_FAULT_COUNT) ? (agv_fault_t)data[REASON_AT] : AGV_FAULT_NONE;
     const bool is_page_0 = (data[OUTPUT_AT] >> PAGE_SHIFT) == 0;
     const bool is_new = is_page_0 && (!supervisor->has_checksum || (supervisor->checksum != checksum_of(data)));
     if (state != supervisor->state) {
@@ -209,7 +208,7 @@ static void take_status(monitor_t *monitor, const uint8_t data[AGV_DLC], uint64_
     }
     supervisor->state = state;
     supervisor->first_reason = reason;
-    supervisor->output_closed = (data[OUTPUT_AT] & (uint8_t)LOW_NIBBLE) != 0u;
+    supervisor->output_closed = (data[OUTPUT_AT] & (uint8_t)LOW_NIBBLE) != 0;
     if (is_new) {
         supervisor->has_checksum = true;
         supervisor->checksum = checksum_of(data);

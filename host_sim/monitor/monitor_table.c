@@ -29,10 +29,10 @@ static void right(monitor_view_t *view, int y, int x, int width, monitor_style_t
 
 /** A time in milliseconds: "9.8", "104", "12.3 s". */
 static void write_ms(char text[CELL_SIZE], uint64_t us) {
-    const uint64_t tenths = us / (US_PER_MS / 10u);
+    const uint64_t tenths = us / (US_PER_MS / 10);
     if (us < (uint64_t)MS_WITH_DECIMAL * US_PER_MS) {
-        (void)snprintf(text, CELL_SIZE, "%" PRIu64 ".%" PRIu64, tenths / 10u, tenths % 10u);
-    } else if (us < 10u * (uint64_t)US_PER_S) {
+        (void)snprintf(text, CELL_SIZE, "%" PRIu64 ".%" PRIu64, tenths / 10, tenths % 10);
+    } else if (us < 10 * (uint64_t)US_PER_S) {
         (void)snprintf(text, CELL_SIZE, "%" PRIu64, us / US_PER_MS);
     } else {
         (void)snprintf(text, CELL_SIZE, "%" PRIu64 "s", us / US_PER_S);
@@ -74,7 +74,7 @@ static void draw_name(monitor_view_t *view, int y, int x, const monitor_t *monit
 static void draw_age(monitor_view_t *view, int y, int x, const monitor_t *monitor, const monitor_row_t *row,
                      monitor_style_t style) {
     char text[CELL_SIZE] = "-";
-    if (row->count > 0u) {
+    if (row->count > 0) {
         write_ms(text, monitor_age_us(monitor, row));
     }
     right(view, y, x, AGE_WIDTH, style, text);
@@ -83,7 +83,7 @@ static void draw_age(monitor_view_t *view, int y, int x, const monitor_t *monito
 static void draw_bar(monitor_view_t *view, int y, int x, const monitor_t *monitor, const monitor_row_t *row,
                      monitor_style_t style) {
     const uint64_t age_us = monitor_age_us(monitor, row);
-    const bool is_long = (age_us * 4u > (uint64_t)row->deadline_us * 3u);
+    const bool is_long = (age_us * 4 > (uint64_t)row->deadline_us * 3);
     const monitor_style_t filled = (style != STYLE_PLAIN) ? style : (is_long ? STYLE_WARN : STYLE_GOOD);
     monitor_view_bar(view, y, x, BAR_WIDTH, filled, age_us, row->deadline_us);
 }
@@ -135,7 +135,7 @@ static void draw_counter(monitor_view_t *view, int y, int x, const monitor_t *mo
                          monitor_style_t style) {
     char text[CELL_SIZE] = "";
     (void)monitor;
-    if (row->has_counter && (row->count > 0u)) {
+    if (row->has_counter && (row->count > 0)) {
         (void)snprintf(text, sizeof text, "%u", (unsigned)row->counter.value);
     }
     right(view, y, x, COUNTER_WIDTH, row->is_stuck ? STYLE_BAD : style, text);
@@ -144,7 +144,7 @@ static void draw_counter(monitor_view_t *view, int y, int x, const monitor_t *mo
 static void draw_data(monitor_view_t *view, int y, int x, const monitor_t *monitor, const monitor_row_t *row,
                       monitor_style_t style) {
     (void)monitor;
-    for (int i = 0; (row->count > 0u) && (i < (int)AGV_DLC); i++) {
+    for (int i = 0; (row->count > 0) && (i < (int)AGV_DLC); i++) {
         x = monitor_view_print(view, y, x, (style == STYLE_PLAIN) ? STYLE_DIM : style, "%02X", (unsigned)row->data[i]);
     }
 }
@@ -154,7 +154,7 @@ static bool is_shown(const signal_info_t *info, const signal_value_t *value) {
     if (info->kind == SIGNAL_COUNTER) {
         return false;
     }
-    return (info->kind == SIGNAL_NUMBER) || (info->kind == SIGNAL_CHOICE) || (value->raw != 0u);
+    return (info->kind == SIGNAL_NUMBER) || (info->kind == SIGNAL_CHOICE) || (value->raw != 0);
 }
 
 static int draw_signal(monitor_view_t *view, int y, int x, const signal_info_t *info, const signal_value_t *value,
@@ -177,7 +177,7 @@ static void draw_signals(monitor_view_t *view, int y, int x, const monitor_t *mo
                          monitor_style_t style) {
     (void)monitor;
     signal_value_t value;
-    if (row->count == 0u) {
+    if (row->count == 0) {
         (void)monitor_view_put(view, y, x, style, "never received");
         return;
     }
@@ -191,7 +191,7 @@ static void draw_signals(monitor_view_t *view, int y, int x, const monitor_t *mo
         /* as it should be */
     }
     bool is_first = true;
-    for (size_t i = 0u; signals_read(row->message, i, row->data, &value); i++) {
+    for (size_t i = 0; signals_read(row->message, i, row->data, &value); i++) {
         const signal_info_t *info = signals_info(row->message, i);
         if (is_shown(info, &value)) {
             x = is_first ? x : monitor_view_put(view, y, x, STYLE_PLAIN, "  ");
@@ -223,7 +223,7 @@ static bool has_column(const monitor_view_t *view, const monitor_t *monitor, con
 
 static void draw_titles(monitor_view_t *view, int y, const monitor_t *monitor) {
     int x = 0;
-    for (size_t c = 0u; c < sizeof columns / sizeof columns[0]; c++) {
+    for (size_t c = 0; c < sizeof columns / sizeof columns[0]; c++) {
         const column_t *column = &columns[c];
         if (has_column(view, monitor, column)) {
             const int blank = column->is_right ? column->width - (int)strlen(column->title) : 0;
@@ -241,13 +241,13 @@ static monitor_style_t style_of(const monitor_row_t *row) {
     if (row->is_silent && row->has_counter) {
         return STYLE_WARN;
     }
-    return ((row->count == 0u) || row->is_silent) ? STYLE_DIM : STYLE_PLAIN;
+    return ((row->count == 0) || row->is_silent) ? STYLE_DIM : STYLE_PLAIN;
 }
 
 static void draw_row(monitor_view_t *view, int y, const monitor_t *monitor, const monitor_row_t *row) {
     const monitor_style_t style = style_of(row);
     int x = 0;
-    for (size_t c = 0u; c < sizeof columns / sizeof columns[0]; c++) {
+    for (size_t c = 0; c < sizeof columns / sizeof columns[0]; c++) {
         if (has_column(view, monitor, &columns[c])) {
             columns[c].draw(view, y, x, monitor, row, style);
             x += columns[c].width + 1;
@@ -257,7 +257,7 @@ static void draw_row(monitor_view_t *view, int y, const monitor_t *monitor, cons
 
 int monitor_table_draw(monitor_view_t *view, int y, const monitor_t *monitor) {
     draw_titles(view, y, monitor);
-    for (size_t i = 0u; i < monitor->row_count; i++) {
+    for (size_t i = 0; i < monitor->row_count; i++) {
         y++;
         draw_row(view, y, monitor, &monitor->rows[i]);
     }

@@ -39,11 +39,11 @@ static const monitor_t *shown_monitor(const monitor_ui_t *ui) {
 
 static void scroll_log(monitor_ui_t *ui, int lines) {
     const size_t length = monitor_log_length(&shown_monitor(ui)->log);
-    const size_t page = (ui->log_lines > 0) ? (size_t)ui->log_lines : 1u;
-    const size_t most = (length > page) ? length - page : 0u;
+    const size_t page = (ui->log_lines > 0) ? (size_t)ui->log_lines : 1;
+    const size_t most = (length > page) ? length - page : 0;
     const size_t now = ui->page.scrolled;
     if (lines < 0) {
-        ui->page.scrolled = (now > (size_t)(-lines)) ? now - (size_t)(-lines) : 0u;
+        ui->page.scrolled = (now > (size_t)(-lines)) ? now - (size_t)(-lines) : 0;
     } else {
         ui->page.scrolled = (now + (size_t)lines < most) ? now + (size_t)lines : most;
     }
@@ -59,15 +59,15 @@ static void type(monitor_ui_t *ui, int key) {
     const size_t length = strlen(typed);
     if (key == MONITOR_KEY_ENTER) {
         ui->page.is_typing = false;
-        ui->wish.has_typed = length > 0u;
+        ui->wish.has_typed = length > 0;
     } else if (key == MONITOR_KEY_ESCAPE) {
         ui->page.is_typing = false;
         typed[0] = '\0';
     } else if (key == MONITOR_KEY_BACKSPACE) {
-        typed[(length > 0u) ? length - 1u : 0u] = '\0';
-    } else if ((key >= ' ') && (key <= '~') && (length + 1u < sizeof ui->page.typed)) {
+        typed[(length > 0) ? length - 1 : 0] = '\0';
+    } else if ((key >= ' ') && (key <= '~') && (length + 1 < sizeof ui->page.typed)) {
         typed[length] = (char)key;
-        typed[length + 1u] = '\0';
+        typed[length + 1] = '\0';
     }
 }
 
@@ -90,7 +90,7 @@ static void move_log(monitor_ui_t *ui, int key) {
         scroll_log(ui, (int)MONITOR_LOG_ENTRIES);
         break;
     case MONITOR_KEY_END:
-        ui->page.scrolled = 0u;
+        ui->page.scrolled = 0;
         break;
     default:
         break;
@@ -138,7 +138,7 @@ void monitor_ui_key(monitor_ui_t *ui, int key) {
     } else {
         obey(ui, key);
     }
-    ui->draw_ms = 0u;
+    ui->draw_ms = 0;
 }
 
 void monitor_ui_keys(monitor_ui_t *ui) {
@@ -154,7 +154,7 @@ void monitor_ui_draw(monitor_ui_t *ui, uint64_t now_ms) {
         return;
     }
     monitor_screen_size(&width, &height);
-    ui->draw_ms = now_ms + (uint64_t)((width * height > (int)LARGE_CELLS) ? DRAW_LARGE_EVERY_MS : DRAW_EVERY_MS);
+    ui->draw_ms = now_ms + (uint64_t)((width * height > LARGE_CELLS) ? DRAW_LARGE_EVERY_MS : DRAW_EVERY_MS);
     monitor_view_clear(&ui->view, width, height);
     ui->log_lines = monitor_page_log_lines(shown_monitor(ui), ui->view.height);
     monitor_page_draw(&ui->view, shown_monitor(ui), &ui->page);

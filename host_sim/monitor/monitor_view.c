@@ -38,12 +38,12 @@ void monitor_view_fill(monitor_view_t *view, int y, monitor_style_t style) {
 
 /** The next character of a text; what is no UTF-8 or cannot be shown is a question mark. */
 static uint32_t next_character(const char **text) {
-    uint32_t character = 0u;
+    uint32_t character = 0;
     const size_t length = text_character(*text, &character);
-    *text += (length > 0u) ? length : 1u;
+    *text += (length > 0) ? length : 1;
     const bool is_ascii = (character >= BLANK) && (character < 0x7Fu);
     const bool is_other = (character >= 0xA0u) && (character <= 0xFFFFu);
-    return ((length > 0u) && (is_ascii || is_other)) ? character : (uint32_t)'?';
+    return ((length > 0) && (is_ascii || is_other)) ? character : (uint32_t)'?';
 }
 
 int monitor_view_put(monitor_view_t *view, int y, int x, monitor_style_t style, const char *text) {
@@ -66,13 +66,13 @@ int monitor_view_print(monitor_view_t *view, int y, int x, monitor_style_t style
 void monitor_view_bar(monitor_view_t *view, int y, int x, int width, monitor_style_t style, uint64_t part,
                       uint64_t whole) {
     const uint64_t room = (uint64_t)width * EIGHTHS;
-    uint64_t filled = (whole == 0u) ? 0u : ((part >= whole) ? room : (part * room) / whole);
-    filled = ((filled == 0u) && (part > 0u)) ? 1u : filled;
+    uint64_t filled = (whole == 0) ? 0 : ((part >= whole) ? room : (part * room) / whole);
+    filled = ((filled == 0) && (part > 0)) ? 1 : filled;
     for (int i = 0; i < width; i++) {
-        const uint64_t mine = (filled > (uint64_t)i * EIGHTHS) ? filled - ((uint64_t)i * EIGHTHS) : 0u;
-        if (mine >= (uint64_t)EIGHTHS) {
+        const uint64_t mine = (filled > (uint64_t)i * EIGHTHS) ? filled - ((uint64_t)i * EIGHTHS) : 0;
+        if (mine >= EIGHTHS) {
             set(view, y, x + i, style, FULL_BLOCK);
-        } else if (mine > 0u) {
+        } else if (mine > 0) {
             set(view, y, x + i, style, FULL_BLOCK + (uint32_t)((uint64_t)EIGHTHS - mine));
         } else {
             set(view, y, x + i, STYLE_DIM, TRACK);

@@ -21,7 +21,7 @@
 
 static bool add(recorder_events_t *events, const agv_event_t *event) {
     if (events->count == events->room) {
-        const size_t room = (events->room == 0u) ? 256u : 2u * events->room;
+        const size_t room = (events->room == 0) ? 256 : 2 * events->room;
         agv_event_t *larger = realloc(events->events, room * sizeof *larger);
         if (larger == NULL) {
             return report("out of memory");
@@ -36,17 +36,17 @@ static bool add(recorder_events_t *events, const agv_event_t *event) {
 
 /** Whether bytes are an event: the checksum has 16 bits only, so its fields have to make sense, too. */
 static bool is_event(const agv_event_t *event) {
-    const bool kind = (event->kind >= (uint8_t)AGV_EVENT_STATE) && (event->kind <= (uint8_t)AGV_EVENT_CRASH);
+    const bool kind = (event->kind >= AGV_EVENT_STATE) && (event->kind <= AGV_EVENT_CRASH);
     const bool state = agv_state_is_latched((agv_state_t)event->state)
-                           ? (event->state == (uint8_t)AGV_STATE_TRIPPED) || (event->state == (uint8_t)AGV_STATE_SAFE)
+                           ? (event->state == AGV_STATE_TRIPPED) || (event->state == AGV_STATE_SAFE)
                            : true;
-    return kind && state && (event->reserved == 0u) && (event->first_reason <= (uint8_t)AGV_FAULT_COUNT) &&
+    return kind && state && (event->reserved == 0) && (event->first_reason <= AGV_FAULT_COUNT) &&
            (event->seen < agv_message_bit(AGV_MSG_COUNT)) && agv_event_is_valid(event);
 }
 
 /** Find the events in bytes, wherever they lie. @return false: no memory; was reported */
 static bool take_bytes(recorder_events_t *events, const uint8_t *bytes, size_t size) {
-    size_t at = 0u;
+    size_t at = 0;
     while (at + sizeof(agv_event_t) <= size) {
         agv_event_t event;
         memcpy(&event, &bytes[at], sizeof event);
@@ -63,8 +63,8 @@ static bool take_bytes(recorder_events_t *events, const uint8_t *bytes, size_t s
 }
 
 static size_t hex_length(const char *text, size_t length) {
-    size_t count = 0u;
-    while ((count < length) && (hex_digit(text[count]) < (uint32_t)HEX_NO_DIGIT)) {
+    size_t count = 0;
+    while ((count < length) && (hex_digit(text[count]) < HEX_NO_DIGIT)) {
         count++;
     }
     return count;
@@ -73,7 +73,7 @@ static size_t hex_length(const char *text, size_t length) {
 /** What follows a word in a line; NULL: it is not there. */
 static const char *text_after(const char *word, const char *line, size_t length) {
     const size_t size = strlen(word);
-    for (size_t at = 0u; at + size <= length; at++) {
+    for (size_t at = 0; at + size <= length; at++) {
         if (memcmp(&line[at], word, size) == 0) {
             return &line[at + size];
         }
@@ -83,8 +83,8 @@ static const char *text_after(const char *word, const char *line, size_t length)
 
 /** Take what names the device: printable characters, as many as fit. */
 static void take_version(recorder_events_t *events, const char *text, size_t length) {
-    size_t used = 0u;
-    while ((used < length) && (used < sizeof events->device - 1u) && (text[used] >= ' ') && (text[used] <= '~')) {
+    size_t used = 0;
+    while ((used < length) && (used < sizeof events->device - 1) && (text[used] >= ' ') && (text[used] <= '~')) {
         events->device[used] = text[used];
         used++;
     }
@@ -104,7 +104,7 @@ static bool take_line(recorder_events_t *events, const char *line, size_t length
     if ((hex_bytes(digits, count, (uint8_t *)&event, sizeof event) == sizeof event) && is_event(&event)) {
         return add(events, &event);
     }
-    events->damaged += ((word != NULL) || (count > sizeof event)) ? 1u : 0u;
+    events->damaged += ((word != NULL) || (count > sizeof event)) ? 1 : 0;
     return true;
 }
 
@@ -123,8 +123,8 @@ static bool take_lines(recorder_events_t *events, const char *text, size_t size)
 
 /** The file of --store: its records, and the recorder in RAM. */
 static bool take_store(recorder_events_t *events, const char *text, size_t size) {
-    sim_store_t *store = calloc(1u, sizeof *store);
-    agv_recorder_t *recorder = calloc(1u, sizeof *recorder);
+    sim_store_t *store = calloc(1, sizeof *store);
+    agv_recorder_t *recorder = calloc(1, sizeof *recorder);
     bool good = (store != NULL) && (recorder != NULL);
     if (!good) {
         (void)report("out of memory");
@@ -132,7 +132,7 @@ static bool take_store(recorder_events_t *events, const char *text, size_t size)
     if (good) {
         store_file_take(text, size, store, recorder);
     }
-    for (uint32_t i = 0u; good && (i < store->count); i++) {
+    for (uint32_t i = 0; good && (i < store->count); i++) {
         uint8_t record[SIM_STORE_RECORD_SIZE_MAX];
         good = take_bytes(events, record, sim_store_read_record(store, i, record, sizeof record));
     }
@@ -145,14 +145,14 @@ static bool take_store(recorder_events_t *events, const char *text, size_t size)
 /** Read a file whole. @return its size; -1: reported */
 static ssize_t read_all(const char *path, const char *name, char **text) {
     const int fd = (strcmp(path, "-") == 0) ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC);
-    size_t size = 0u;
+    size_t size = 0;
     ssize_t count = -1;
-    *text = (fd >= 0) ? malloc(FILE_MAX + 1u) : NULL;
+    *text = (fd >= 0) ? malloc(FILE_MAX + 1) : NULL;
     if (fd >= 0) {
         count = (*text != NULL) ? 1 : -1;
         while ((count > 0) && (size <= FILE_MAX)) {
-            count = read(fd, &(*text)[size], FILE_MAX + 1u - size);
-            size += (count > 0) ? (size_t)count : 0u;
+            count = read(fd, &(*text)[size], FILE_MAX + 1 - size);
+            size += (count > 0) ? (size_t)count : 0;
         }
     }
     if (count < 0) {
@@ -176,20 +176,20 @@ static int by_sequence(const void *one, const void *other) {
 }
 
 static void shift_sequences(recorder_events_t *events, uint32_t by) {
-    for (size_t i = 0u; i < events->count; i++) {
+    for (size_t i = 0; i < events->count; i++) {
         events->events[i].sequence += by;
     }
 }
 
 /** Sequence numbers wrap: they are sorted by their distance from one of them. */
 static void sort(recorder_events_t *events) {
-    const uint32_t shift = (events->count > 0u) ? ((UINT32_MAX / 2u) - events->events[0].sequence) : 0u;
-    size_t kept = 0u;
+    const uint32_t shift = (events->count > 0) ? ((UINT32_MAX / 2) - events->events[0].sequence) : 0;
+    size_t kept = 0;
     shift_sequences(events, shift);
     qsort(events->events, events->count, sizeof events->events[0], by_sequence);
-    shift_sequences(events, 0u - shift);
-    for (size_t i = 0u; i < events->count; i++) {
-        if ((kept == 0u) || (events->events[kept - 1u].sequence != events->events[i].sequence)) {
+    shift_sequences(events, 0 - shift);
+    for (size_t i = 0; i < events->count; i++) {
+        if ((kept == 0) || (events->events[kept - 1].sequence != events->events[i].sequence)) {
             events->events[kept] = events->events[i];
             kept++;
         }
@@ -204,7 +204,7 @@ static bool take_file(recorder_events_t *events, const char *text, size_t size) 
     if (!take_lines(events, text, size)) {
         return false;
     }
-    return (events->count > 0u) || take_bytes(events, (const uint8_t *)text, size);
+    return (events->count > 0) || take_bytes(events, (const uint8_t *)text, size);
 }
 
 bool recorder_file_read(const char *path, recorder_events_t *events) {
@@ -213,7 +213,7 @@ bool recorder_file_read(const char *path, recorder_events_t *events) {
     const ssize_t size = read_all(path, name, &text);
     bool good = (size >= 0) && take_file(events, text, (size_t)size);
     free(text);
-    if (good && (events->count == 0u)) {
+    if (good && (events->count == 0)) {
         good = report(
             "%s: contains no flight recorder event (lines 'agv-event' of 'agv dump', a memory dump, or a --store "
             "file)",
@@ -227,5 +227,5 @@ bool recorder_file_read(const char *path, recorder_events_t *events) {
 
 void recorder_events_free(recorder_events_t *events) {
     free(events->events);
-    *events = (recorder_events_t){.count = 0u};
+    *events = (recorder_events_t){.count = 0};
 }

@@ -32,17 +32,17 @@ typedef struct {
 /** Whether an event is a trip, and not a start that continues the trip of the run before. */
 static bool is_trip(const recorder_events_t *events, size_t i) {
     const agv_event_t *event = &events->events[i];
-    const bool continues = (event->a == 0u) && (i > 0u) && (events->events[i - 1u].first_reason == event->c);
-    return (event->kind == (uint8_t)AGV_EVENT_STATE) && (event->b == (uint8_t)AGV_STATE_TRIPPED) &&
-           (event->c < (uint8_t)AGV_FAULT_COUNT) && !continues;
+    const bool continues = (event->a == 0) && (i > 0) && (events->events[i - 1].first_reason == event->c);
+    return (event->kind == AGV_EVENT_STATE) && (event->b == AGV_STATE_TRIPPED) && (event->c < AGV_FAULT_COUNT) &&
+           !continues;
 }
 
 /** The run to tell of. @return false: there is none; was reported */
 static bool choose_run(work_t *work) {
     const recorder_events_t *events = &work->events;
     bool found = false;
-    work->run = events->events[events->count - 1u].run;
-    for (size_t i = 0u; i < events->count; i++) {
+    work->run = events->events[events->count - 1].run;
+    for (size_t i = 0; i < events->count; i++) {
         const agv_event_t *event = &events->events[i];
         if (work->request->run == RECORDER_RUN_NEWEST) {
             work->run = is_trip(events, i) ? event->run : work->run;
@@ -62,11 +62,11 @@ static bool choose_run(work_t *work) {
 static void find_run(work_t *work) {
     const recorder_events_t *events = &work->events;
     size_t end = events->count;
-    while ((end > 0u) && (events->events[end - 1u].run != work->run)) {
+    while ((end > 0) && (events->events[end - 1].run != work->run)) {
         end--;
     }
     size_t first = end;
-    while ((first > 0u) && (events->events[first - 1u].run == work->run)) {
+    while ((first > 0) && (events->events[first - 1].run == work->run)) {
         first--;
     }
     work->first = first;
@@ -76,11 +76,11 @@ static void find_run(work_t *work) {
 /** "of run 0", "of runs 0, 1" */
 static void print_runs(const work_t *work) {
     const recorder_events_t *events = &work->events;
-    const bool is_one = events->events[0].run == events->events[events->count - 1u].run;
+    const bool is_one = events->events[0].run == events->events[events->count - 1].run;
     (void)printf(" of run%s", is_one ? "" : "s");
-    for (size_t i = 0u; i < events->count; i++) {
-        if ((i == 0u) || (events->events[i].run != events->events[i - 1u].run)) {
-            (void)printf("%s %u", (i == 0u) ? "" : ",", events->events[i].run);
+    for (size_t i = 0; i < events->count; i++) {
+        if ((i == 0) || (events->events[i].run != events->events[i - 1].run)) {
+            (void)printf("%s %u", (i == 0) ? "" : ",", events->events[i].run);
         }
     }
 }
@@ -104,27 +104,27 @@ static void print_head(const work_t *work) {
     text_t name;
     (void)printf("%s: %zu event%s", text_one_line(&name, report_input_name(work->request->path)), work->events.count,
                  words_plural(work->events.count));
-    if (work->events.damaged > 0u) {
-        (void)printf(" (%zu more %s damaged)", work->events.damaged, (work->events.damaged == 1u) ? "is" : "are");
+    if (work->events.damaged > 0) {
+        (void)printf(" (%zu more %s damaged)", work->events.damaged, (work->events.damaged == 1) ? "is" : "are");
     }
     print_runs(work);
     (void)printf("\n");
     print_device(work);
     (void)printf("run %u       %zu event%s, %" PRIu32 ".%03" PRIu32 " s to %" PRIu64 ".%03" PRIu64
                  " s of its clock%s\n\n",
-                 work->run, work->count, words_plural(work->count), first->time_ms / (uint32_t)MS_PER_S,
-                 first->time_ms % (uint32_t)MS_PER_S, work->end_ms / MS_PER_S, work->end_ms % MS_PER_S,
-                 ((first->kind == (uint8_t)AGV_EVENT_STATE) && (first->a == 0u)) ? "" : "; its start was overwritten");
+                 work->run, work->count, words_plural(work->count), first->time_ms / MS_PER_S,
+                 first->time_ms % MS_PER_S, work->end_ms / MS_PER_S, work->end_ms % MS_PER_S,
+                 ((first->kind == AGV_EVENT_STATE) && (first->a == 0)) ? "" : "; its start was overwritten");
 }
 
 /** Feed the events, at the times of the device's clock. */
 static void feed(work_t *work, bool with_timeline) {
     uint32_t last_ms = work->events.events[work->first].time_ms;
     uint64_t t_ms = last_ms;
-    for (size_t i = 0u; i < work->count; i++) {
+    for (size_t i = 0; i < work->count; i++) {
         const agv_event_t *event = &work->events.events[work->first + i];
         const uint32_t elapsed_ms = event->time_ms - last_ms;
-        t_ms += (elapsed_ms < UINT32_MAX / 2u) ? elapsed_ms : 0u;
+        t_ms += (elapsed_ms < UINT32_MAX / 2) ? elapsed_ms : 0;
         last_ms = event->time_ms;
         const session_event_t told = {.t_ms = t_ms, .recorded = *event};
         if (with_timeline) {
@@ -168,11 +168,11 @@ static bool analyse(work_t *work) {
     feed(work, false);
     analysis_end(work->analysis, work->end_ms * US_PER_MS);
     analysis_write(work->analysis);
-    return output_flush_all(&work->lines, 1u) && analysis_commit(work->analysis) && output_commit(&work->lines);
+    return output_flush_all(&work->lines, 1) && analysis_commit(work->analysis) && output_commit(&work->lines);
 }
 
 status_t recorder_run(const recorder_request_t *request) {
-    work_t *work = calloc(1u, sizeof *work);
+    work_t *work = calloc(1, sizeof *work);
     if (work == NULL) {
         (void)report("out of memory");
         return STATUS_UNUSABLE;

@@ -75,8 +75,8 @@ static bool run_ticks(replay_t *replay, uint64_t end_us) {
         sim_hal_set_now_ms(&replay->hal, clock_ms);
         session_tick(&replay->session, t_ms, clock_ms);
         replay->next_tick_us += US_PER_MS;
-        replay->next_tick_ms = t_ms + 1u;
-        if (((t_ms % LOOK_FOR_SIGNALS_EVERY) == 0u) && (interrupt_pending() || !outputs_work(replay))) {
+        replay->next_tick_ms = t_ms + 1;
+        if (((t_ms % LOOK_FOR_SIGNALS_EVERY) == 0) && (interrupt_pending() || !outputs_work(replay))) {
             return false;
         }
     }
@@ -107,7 +107,7 @@ static void pass_on_record(replay_t *replay, candump_record_t *record, uint64_t 
     if (replay->request->timeline) {
         timeline_received(&replay->timeline, side, &record->frame, t_us);
     }
-    if ((record->frame.flags & HAL_CAN_ERROR) != 0u) {
+    if ((record->frame.flags & HAL_CAN_ERROR) != 0) {
         error_frame_act(&replay->hal, side, &record->frame);
     }
     session_frame(&replay->session, side, &record->frame, t_ms);
@@ -126,7 +126,7 @@ static bool pass_record(replay_t *replay, candump_record_t *record) {
         return false;
     }
     replay->now_us = record->stamp_us;
-    const uint64_t t_ms = replay->next_tick_ms - ((record->stamp_us == replay->next_tick_us) ? 0u : 1u);
+    const uint64_t t_ms = replay->next_tick_ms - ((record->stamp_us == replay->next_tick_us) ? 0 : 1);
     pass_on_record(replay, record, t_ms);
     return outputs_work(replay);
 }
@@ -140,7 +140,7 @@ static bool pass_log(replay_t *replay, candump_record_t *record) {
         }
         result = candump_next(&replay->log, record);
     }
-    return (result == CANDUMP_END) && run_ticks(replay, replay->last_us + (replay->request->tail_ms * US_PER_MS) + 1u);
+    return (result == CANDUMP_END) && run_ticks(replay, replay->last_us + (replay->request->tail_ms * US_PER_MS) + 1);
 }
 
 static void start(replay_t *replay, uint64_t first_us) {
@@ -154,8 +154,8 @@ static void start(replay_t *replay, uint64_t first_us) {
     replay->last_us = first_us;
     replay->now_us = first_us;
     replay->next_tick_us = first_us + US_PER_MS;
-    replay->next_tick_ms = 1u;
-    sim_hal_init_direct(&replay->hal, &config, is_gateway ? 2u : 1u, on_sent, replay);
+    replay->next_tick_ms = 1;
+    sim_hal_init_direct(&replay->hal, &config, is_gateway ? 2 : 1, on_sent, replay);
     if (request->ai_interface != NULL) {
         const size_t length = strlen(request->ai_interface);
         sent_log_heard(&replay->sent, HAL_CAN_AI, request->ai_interface, length);
@@ -173,7 +173,7 @@ static void start(replay_t *replay, uint64_t first_us) {
     if (request->listener != NULL) {
         (void)session_observe(&replay->session, request->listener->on_event, request->listener->ctx);
     }
-    session_start(&replay->session, &request->config, 0u, request->start_ms);
+    session_start(&replay->session, &request->config, 0, request->start_ms);
 }
 
 /** Whether standard output is free for the text. */
@@ -235,9 +235,9 @@ static bool conclude(replay_t *replay) {
     if (good && (request->listener != NULL)) {
         request->listener->on_end(request->listener->ctx, why);
     }
-    text_t back = {.used = 0u};
-    const bool is_whole = (why_supervised_us(why) > 0u) && !replay_text_goes_back(&back, &replay->heard);
-    replay->unmet = request->fail_on_trip && ((why_trip_count(why) > 0u) || !is_whole);
+    text_t back = {.used = 0};
+    const bool is_whole = (why_supervised_us(why) > 0) && !replay_text_goes_back(&back, &replay->heard);
+    replay->unmet = request->fail_on_trip && ((why_trip_count(why) > 0) || !is_whole);
     return good;
 }
 
@@ -255,7 +255,7 @@ static bool prepare(replay_t *replay, candump_record_t *first) {
         return false;
     }
     const char *const paths[OUTPUTS] = {[OUT] = request->out, [EVENTS] = request->events, [STORE] = request->store};
-    for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
+    for (size_t i = 0; i < OUTPUTS; i++) {
         if ((paths[i] != NULL) && !output_open(&replay->outputs[i], paths[i])) {
             return false;
         }
@@ -298,7 +298,7 @@ status_t replay_run(const replay_request_t *request) {
     if (!check_request(request)) {
         return STATUS_UNUSABLE;
     }
-    replay_t *replay = calloc(1u, sizeof *replay);
+    replay_t *replay = calloc(1, sizeof *replay);
     if (replay == NULL) {
         (void)report("out of memory");
         return STATUS_UNUSABLE;
@@ -309,7 +309,7 @@ status_t replay_run(const replay_request_t *request) {
     session_init(&replay->session, &replay->hal);
     const bool good = make_analysis(replay) && run(replay);
     const status_t status = replay->unmet ? STATUS_UNMET : STATUS_OK;
-    for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
+    for (size_t i = 0; i < OUTPUTS; i++) {
         output_discard(&replay->outputs[i]);
     }
     analysis_free(replay->analysis);

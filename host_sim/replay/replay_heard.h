@@ -16,19 +16,19 @@
 
 /** All zero: nothing yet. */
 typedef struct {
-    char names[REPLAY_INTERFACES_MAX][CANDUMP_INTERFACE_MAX + 1u];
+    char names[REPLAY_INTERFACES_MAX][CANDUMP_INTERFACE_MAX + 1];
     size_t name_count;
     bool more_names; /**< than have room */
     size_t last_name;
-    uint64_t last_us;             /**< of the last frame, since the start */
-    uint8_t ids[AGV_ID_MAX + 1u]; /**< bit n: a classic data frame with this 11-bit identifier was heard on names[n] */
-    bool extended;                /**< a data frame with a 29-bit identifier was heard */
-    bool fd;                      /**< a CAN FD frame was heard */
-    uint64_t pause_us;            /**< the longest time without any frame */
-    uint64_t pause_at_us;         /**< when it began, since the start */
-    uint64_t back_us;             /**< how far the time stamps go back at most; 0: they never do */
-    uint64_t back_at_us;          /**< the time since the start that stands still then */
-    uint64_t back_line;           /**< the line of the log where they do */
+    uint64_t last_us;            /**< of the last frame, since the start */
+    uint8_t ids[AGV_ID_MAX + 1]; /**< bit n: a classic data frame with this 11-bit identifier was heard on names[n] */
+    bool extended;               /**< a data frame with a 29-bit identifier was heard */
+    bool fd;                     /**< a CAN FD frame was heard */
+    uint64_t pause_us;           /**< the longest time without any frame */
+    uint64_t pause_at_us;        /**< when it began, since the start */
+    uint64_t back_us;            /**< how far the time stamps go back at most; 0: they never do */
+    uint64_t back_at_us;         /**< the time since the start that stands still then */
+    uint64_t back_line;          /**< the line of the log where they do */
 } replay_heard_t;
 
 /** Note a frame of the log. @param t_us its time since the start */

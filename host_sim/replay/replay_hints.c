@@ -10,13 +10,13 @@
 enum { SHOWN_IDS = 6, PAUSE_US = US_PER_S };
 
 static bool is_heard(const replay_heard_t *heard, uint32_t id) {
-    return (id <= AGV_ID_MAX) && (heard->ids[id] != 0u);
+    return (id <= AGV_ID_MAX) && (heard->ids[id] != 0);
 }
 
 /** Add identifiers as a list: "201h and 203h". */
 static void add_ids(text_t *text, const uint16_t ids[], size_t count) {
-    for (size_t i = 0u; i < count; i++) {
-        const char *between = (i == 0u) ? "" : ((i + 1u == count) ? " and " : ", ");
+    for (size_t i = 0; i < count; i++) {
+        const char *between = (i == 0) ? "" : ((i + 1 == count) ? " and " : ", ");
         text_add(text, "%s%03Xh", between, (unsigned)ids[i]);
     }
 }
@@ -29,9 +29,9 @@ static bool hint_id_set(text_t *text, const replay_clues_t *clues) {
     agv_ids_t ids;
     uint16_t found[AGV_MSG_COUNT];
     uint16_t lacking[AGV_MSG_COUNT];
-    size_t count = 0u;
+    size_t count = 0;
     agv_config_ids(config, &ids);
-    for (uint32_t m = 0u; m < (uint32_t)AGV_MSG_COUNT; m++) {
+    for (uint32_t m = 0; m < AGV_MSG_COUNT; m++) {
         const uint16_t other = agv_message_id(m, other_set);
         if ((other != ids.of[m]) && is_heard(heard, other) && !is_heard(heard, ids.of[m]) &&
             (agv_message_id(m, config->id_set) == ids.of[m])) {
@@ -40,29 +40,29 @@ static bool hint_id_set(text_t *text, const replay_clues_t *clues) {
             count++;
         }
     }
-    if (count == 0u) {
+    if (count == 0) {
         return false;
     }
     add_ids(text, found, count);
     text_add(text, " heard, ");
     add_ids(text, lacking, count);
-    text_add(text, " not: --id-set %s", (other_set == (uint32_t)AGV_ID_SET_TABLE) ? "table" : "heading");
+    text_add(text, " not: --id-set %s", (other_set == AGV_ID_SET_TABLE) ? "table" : "heading");
     return true;
 }
 
 static size_t known_heard(const replay_clues_t *clues) {
     agv_ids_t ids;
-    size_t count = 0u;
+    size_t count = 0;
     agv_config_ids(clues->config, &ids);
-    for (size_t m = 0u; m < (size_t)AGV_MSG_COUNT; m++) {
-        count += is_heard(clues->heard, ids.of[m]) ? 1u : 0u;
+    for (size_t m = 0; m < AGV_MSG_COUNT; m++) {
+        count += is_heard(clues->heard, ids.of[m]) ? 1 : 0;
     }
     return count;
 }
 
 /** Whether the log is of this vehicle: half of its messages were heard. */
 static bool is_this_vehicle(const replay_clues_t *clues) {
-    return 2u * known_heard(clues) >= (size_t)AGV_MSG_COUNT;
+    return 2 * known_heard(clues) >= AGV_MSG_COUNT;
 }
 
 /** What was heard where no data frame of the right kind was. */
@@ -80,7 +80,7 @@ static void add_some(text_t *text, const uint16_t ids[], size_t count, bool more
         add_ids(text, ids, count);
         return;
     }
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         text_add(text, "%03Xh, ", (unsigned)ids[i]);
     }
     text_add(text, "and others");
@@ -89,15 +89,15 @@ static void add_some(text_t *text, const uint16_t ids[], size_t count, bool more
 /** The identifiers that were heard. @param of_protocol also those of the protocol @param more there are more than shown */
 static size_t heard_ids(const replay_clues_t *clues, bool of_protocol, uint16_t shown[SHOWN_IDS], bool *more) {
     agv_ids_t ids;
-    size_t count = 0u;
+    size_t count = 0;
     agv_config_ids(clues->config, &ids);
     *more = false;
-    for (uint32_t id = 0u; (id <= AGV_ID_MAX) && !*more; id++) {
+    for (uint32_t id = 0; (id <= AGV_ID_MAX) && !*more; id++) {
         const bool is_known = (agv_ids_find(&ids, id) != AGV_MSG_NONE) || (id == clues->config->status_frame_id);
         if (!is_heard(clues->heard, id) || (is_known && !of_protocol)) {
             continue;
         }
-        *more = count == (size_t)SHOWN_IDS;
+        *more = count == SHOWN_IDS;
         if (!*more) {
             shown[count] = (uint16_t)id;
             count++;
@@ -113,7 +113,7 @@ static bool hint_other_vehicle(text_t *text, const replay_clues_t *clues) {
         return false;
     }
     const size_t count = heard_ids(clues, true, shown, &more);
-    if (count == 0u) {
+    if (count == 0) {
         text_add(text, "%s", other_frames(clues->heard));
         return true;
     }
@@ -129,11 +129,11 @@ static bool hint_other_vehicle(text_t *text, const replay_clues_t *clues) {
 /** The identifiers of a node of which nothing was heard. @return how many; 0: something was */
 static size_t ids_of_silent(const replay_clues_t *clues, message_sender_t sender, uint16_t lacking[AGV_MSG_COUNT]) {
     agv_ids_t ids;
-    size_t count = 0u;
+    size_t count = 0;
     agv_config_ids(clues->config, &ids);
-    for (uint32_t m = 0u; m < (uint32_t)AGV_MSG_COUNT; m++) {
+    for (uint32_t m = 0; m < AGV_MSG_COUNT; m++) {
         if ((message_sender(m) == sender) && is_heard(clues->heard, ids.of[m])) {
-            return 0u;
+            return 0;
         }
         if (message_sender(m) == sender) {
             lacking[count] = ids.of[m];
@@ -149,10 +149,10 @@ static bool hint_node(text_t *text, const replay_clues_t *clues) {
         message_sender_t sender;
         const char *name;
     } nodes[] = {{MESSAGE_FROM_EPS, "EPS"}, {MESSAGE_FROM_VCU, "VCU"}, {MESSAGE_FROM_AI, "AI computer"}};
-    for (size_t n = 0u; is_this_vehicle(clues) && (n < sizeof nodes / sizeof nodes[0]); n++) {
+    for (size_t n = 0; is_this_vehicle(clues) && (n < sizeof nodes / sizeof nodes[0]); n++) {
         uint16_t lacking[AGV_MSG_COUNT];
         const size_t count = ids_of_silent(clues, nodes[n].sender, lacking);
-        if (count > 0u) {
+        if (count > 0) {
             add_ids(text, lacking, count);
             text_add(text, " never received: is the %s on this bus?", nodes[n].name);
             return true;
@@ -165,19 +165,19 @@ static bool hint_node(text_t *text, const replay_clues_t *clues) {
 static bool hint_ids(text_t *text, const replay_clues_t *clues) {
     uint16_t unknown[SHOWN_IDS];
     uint16_t lacking[AGV_MSG_COUNT];
-    size_t count = 0u;
+    size_t count = 0;
     bool more = false;
-    text_t other = {.used = 0u};
+    text_t other = {.used = 0};
     agv_ids_t ids;
     agv_config_ids(clues->config, &ids);
-    for (size_t m = 0u; m < (size_t)AGV_MSG_COUNT; m++) {
+    for (size_t m = 0; m < AGV_MSG_COUNT; m++) {
         if (!is_heard(clues->heard, ids.of[m])) {
             lacking[count] = ids.of[m];
             count++;
         }
     }
     const size_t unknown_count = heard_ids(clues, false, unknown, &more);
-    if ((count == 0u) || (unknown_count == 0u) || !is_this_vehicle(clues) || hint_id_set(&other, clues) ||
+    if ((count == 0) || (unknown_count == 0) || !is_this_vehicle(clues) || hint_id_set(&other, clues) ||
         hint_node(&other, clues)) {
         return false;
     }
@@ -190,7 +190,7 @@ static bool hint_ids(text_t *text, const replay_clues_t *clues) {
 
 /** The vehicle drives by itself from the first frame on. */
 static bool hint_begin(text_t *text, const replay_clues_t *clues) {
-    if ((why_supervised_us(clues->why) > 0u) || ((why_missing(clues->why) & AGV_MISSING_MANUAL) == 0u) ||
+    if ((why_supervised_us(clues->why) > 0) || ((why_missing(clues->why) & AGV_MISSING_MANUAL) == 0) ||
         !why_began_in_autopilot(clues->why)) {
         return false;
     }
@@ -200,19 +200,19 @@ static bool hint_begin(text_t *text, const replay_clues_t *clues) {
 
 /** The interfaces on which commands or status messages were heard, as bits. */
 static uint32_t interfaces_of(const replay_clues_t *clues, bool commands) {
-    uint32_t interfaces = 0u;
+    uint32_t interfaces = 0;
     agv_ids_t ids;
     agv_config_ids(clues->config, &ids);
-    for (size_t m = 0u; m < (size_t)AGV_MSG_COUNT; m++) {
-        interfaces |= ((m < (size_t)AGV_COMMAND_COUNT) == commands) ? clues->heard->ids[ids.of[m]] : 0u;
+    for (size_t m = 0; m < AGV_MSG_COUNT; m++) {
+        interfaces |= ((m < AGV_COMMAND_COUNT) == commands) ? clues->heard->ids[ids.of[m]] : 0;
     }
     return interfaces;
 }
 
 static void add_interfaces(text_t *text, const replay_heard_t *heard, uint32_t interfaces) {
     const char *between = "";
-    for (size_t i = 0u; i < heard->name_count; i++) {
-        if (((interfaces >> i) & 1u) != 0u) {
+    for (size_t i = 0; i < heard->name_count; i++) {
+        if (((interfaces >> i) & 1) != 0) {
             text_add(text, "%s%s", between, heard->names[i]);
             between = " and ";
         }
@@ -220,18 +220,18 @@ static void add_interfaces(text_t *text, const replay_heard_t *heard, uint32_t i
 }
 
 static bool is_single(uint32_t bits) {
-    return (bits != 0u) && ((bits & (bits - 1u)) == 0u);
+    return (bits != 0) && ((bits & (bits - 1)) == 0);
 }
 
 /** The AI side as a bit; 0: nothing was heard there. */
 static uint32_t ai_side_of(const replay_clues_t *clues) {
     const replay_heard_t *heard = clues->heard;
-    for (size_t i = 0u; (clues->ai_interface != NULL) && (i < heard->name_count); i++) {
+    for (size_t i = 0; (clues->ai_interface != NULL) && (i < heard->name_count); i++) {
         if (strcmp(heard->names[i], clues->ai_interface) == 0) {
             return 1u << i;
         }
     }
-    return 0u;
+    return 0;
 }
 
 /** A gateway's log that keeps it in INIT: the sides are swapped, or the commands that the gateway sent are in it. */
@@ -239,11 +239,11 @@ static bool hint_sides(text_t *text, const replay_clues_t *clues) {
     const uint32_t ai_side = ai_side_of(clues);
     const uint32_t status = interfaces_of(clues, false);
     const uint32_t other_commands = interfaces_of(clues, true) & ~ai_side;
-    if ((clues->config->topology != (uint16_t)AGV_TOPOLOGY_GATEWAY) || (why_supervised_us(clues->why) > 0u) ||
-        (other_commands == 0u)) {
+    if ((clues->config->topology != AGV_TOPOLOGY_GATEWAY) || (why_supervised_us(clues->why) > 0) ||
+        (other_commands == 0)) {
         return false;
     }
-    if ((status != 0u) && (status == ai_side) && is_single(other_commands)) {
+    if ((status != 0) && (status == ai_side) && is_single(other_commands)) {
         text_add(text, "the sides are swapped (status messages come on %s): --ai-if ", clues->ai_interface);
         add_interfaces(text, clues->heard, other_commands);
     } else {
@@ -258,11 +258,11 @@ static bool hint_sides(text_t *text, const replay_clues_t *clues) {
 static bool hint_interfaces(text_t *text, const replay_clues_t *clues) {
     const uint32_t commands = interfaces_of(clues, true);
     const uint32_t status = interfaces_of(clues, false);
-    if ((clues->config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) || is_single(commands | status) ||
-        ((commands | status) == 0u)) {
+    if ((clues->config->topology == AGV_TOPOLOGY_GATEWAY) || is_single(commands | status) ||
+        ((commands | status) == 0)) {
         return false;
     }
-    if (is_single(commands) && ((commands & status) == 0u)) {
+    if (is_single(commands) && ((commands & status) == 0)) {
         text_add(text, "commands come on ");
         add_interfaces(text, clues->heard, commands);
         text_add(text, ", status messages on ");
@@ -280,7 +280,7 @@ static bool hint_interfaces(text_t *text, const replay_clues_t *clues) {
 /** Nothing at all was heard for some time. */
 static bool hint_pause(text_t *text, const replay_clues_t *clues) {
     const replay_heard_t *heard = clues->heard;
-    if (heard->pause_us < (uint64_t)PAUSE_US) {
+    if (heard->pause_us < PAUSE_US) {
         return false;
     }
     text_add(text, "no frame at all from ");

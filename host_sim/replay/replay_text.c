@@ -20,8 +20,8 @@ enum { NOT_SUPERVISED_LABEL = 16, BACK_US = 10 * US_PER_MS };
 /** Whether something had begun when the log ended. */
 static bool has_pending(const replay_text_t *replay) {
     bool pending = false;
-    for (int fault = 0; fault < (int)AGV_FAULT_COUNT; fault++) {
-        text_t text = {.used = 0u};
+    for (int fault = 0; fault < AGV_FAULT_COUNT; fault++) {
+        text_t text = {.used = 0};
         pending = pending || why_words_pending(&text, replay->why, (agv_fault_t)fault);
     }
     return pending;
@@ -32,8 +32,8 @@ static void add_head(text_t *text, const replay_text_t *replay) {
     const replay_heard_t *heard = replay->heard;
     const uint64_t ms = shown_ms(replay->first_us, replay->first_us + replay->duration_us);
     text_add(text, "%" PRIu64 ".%03" PRIu64 " s on ", ms / MS_PER_S, ms % MS_PER_S);
-    for (size_t i = 0u; i < heard->name_count; i++) {
-        text_add(text, "%s%s", (i > 0u) ? ", " : "", heard->names[i]);
+    for (size_t i = 0; i < heard->name_count; i++) {
+        text_add(text, "%s%s", (i > 0) ? ", " : "", heard->names[i]);
     }
     text_add(text, "%s", heard->more_names ? " and others" : "");
     if (why_text_has_clock(replay->first_us)) {
@@ -48,14 +48,14 @@ static void add_head(text_t *text, const replay_text_t *replay) {
 
 /** The name of the log has a line of its own where the rest does not fit behind it. */
 static void print_head(const replay_text_t *replay) {
-    text_t text = {.used = 0u};
+    text_t text = {.used = 0};
     text_t copy;
     const char *name = text_one_line(&copy, replay->name);
     add_head(&text, replay);
-    if (strlen(name) + strlen(": ") + text.used <= (size_t)TEXT_COLUMNS) {
+    if (strlen(name) + strlen(": ") + text.used <= TEXT_COLUMNS) {
         (void)printf("%s: %s\n", name, text.bytes);
     } else {
-        text_t line = {.used = 0u};
+        text_t line = {.used = 0};
         text_add(&line, "%s:", name);
         why_text_line("", 0, line.bytes);
         why_text_line("", WHY_TEXT_LABEL, text.bytes);
@@ -70,8 +70,8 @@ static replay_clues_t clues_of(const replay_text_t *replay) {
 /** @param has_parent a line above it says what was not supervised */
 static void print_hints(const replay_text_t *replay, bool has_parent) {
     const replay_clues_t clues = clues_of(replay);
-    text_t text = {.used = 0u};
-    for (int hint = 0; hint < (int)REPLAY_HINTS; hint++) {
+    text_t text = {.used = 0};
+    for (int hint = 0; hint < REPLAY_HINTS; hint++) {
         text_clear(&text);
         if (replay_hint(&text, (replay_hint_t)hint, &clues)) {
             why_text_line(has_parent ? "  hint" : "hint", WHY_TEXT_LABEL, text.bytes);
@@ -81,10 +81,10 @@ static void print_hints(const replay_text_t *replay, bool has_parent) {
 
 /** Add a condition for leaving INIT that did not hold. @param details say why: of the end of the run */
 static void add_condition(text_t *text, const replay_text_t *replay, uint8_t bit, bool details) {
-    text_t detail = {.used = 0u};
+    text_t detail = {.used = 0};
     text_add(text, "%s", agv_missing_name(bit));
     why_words_missing(&detail, replay->why, bit);
-    if (details && (detail.used > 0u)) {
+    if (details && (detail.used > 0)) {
         text_add(text, " (%s)", detail.bytes);
     }
 }
@@ -93,12 +93,12 @@ static void add_condition(text_t *text, const replay_text_t *replay, uint8_t bit
 static void add_missing(text_t *text, const replay_text_t *replay, bool details) {
     const uint32_t missing = why_missing(replay->why);
     const char *between = "";
-    if ((missing & AGV_MISSING_MANUAL) != 0u) {
+    if ((missing & AGV_MISSING_MANUAL) != 0) {
         add_condition(text, replay, MANUAL_BIT, details);
         between = ", ";
     }
-    for (uint8_t bit = 0u; agv_missing_name(bit) != NULL; bit++) {
-        if ((bit != (uint8_t)MANUAL_BIT) && (((missing >> bit) & 1u) != 0u)) {
+    for (uint8_t bit = 0; agv_missing_name(bit) != NULL; bit++) {
+        if ((bit != MANUAL_BIT) && (((missing >> bit) & 1) != 0)) {
             text_add(text, "%s", between);
             add_condition(text, replay, bit, details);
             between = ", ";
@@ -108,13 +108,13 @@ static void add_missing(text_t *text, const replay_text_t *replay, bool details)
 
 /** What was not supervised: all of it, or a beginning that is longer than a start takes. @return false: neither */
 static bool add_not_supervised(text_t *text, const replay_text_t *replay) {
-    const bool never = why_supervised_us(replay->why) == 0u;
+    const bool never = why_supervised_us(replay->why) == 0;
     if (!why_left_init_late(replay->why)) {
         return false;
     }
     if (never) {
         text_add(text, "never left INIT");
-        if (why_missing(replay->why) == 0u) {
+        if (why_missing(replay->why) == 0) {
             text_add(text, ": the log is too short, a start takes more than %u ms",
                      (unsigned)replay->config->init_hold_ms);
         }
@@ -122,7 +122,7 @@ static bool add_not_supervised(text_t *text, const replay_text_t *replay) {
         why_words_time(text, why_state_us(replay->why, WHY_INIT));
         text_add(text, " in INIT");
     }
-    if (why_missing(replay->why) != 0u) {
+    if (why_missing(replay->why) != 0) {
         text_add(text, never ? ", missing: " : ", until then missing: ");
         add_missing(text, replay, never);
     }
@@ -130,7 +130,7 @@ static bool add_not_supervised(text_t *text, const replay_text_t *replay) {
 }
 
 bool replay_text_goes_back(text_t *text, const replay_heard_t *heard) {
-    if (heard->back_us < (uint64_t)BACK_US) {
+    if (heard->back_us < BACK_US) {
         return false;
     }
     text_add(text, "the time stamps go back by ");
@@ -144,7 +144,7 @@ bool replay_text_goes_back(text_t *text, const replay_heard_t *heard) {
 
 /** @return false: there is nothing to say */
 static bool print_not_supervised(const replay_text_t *replay) {
-    text_t text = {.used = 0u};
+    text_t text = {.used = 0};
     const bool is_part = add_not_supervised(&text, replay);
     if (is_part) {
         why_text_line("NOT SUPERVISED: ", NOT_SUPERVISED_LABEL, text.bytes);
@@ -159,7 +159,7 @@ static bool print_not_supervised(const replay_text_t *replay) {
 
 /** Without an engagement nothing is known of the AI computer. */
 static void print_not_judged(const replay_text_t *replay) {
-    if ((why_supervised_us(replay->why) > 0u) && !why_was_engaged(replay->why)) {
+    if ((why_supervised_us(replay->why) > 0) && !why_was_engaged(replay->why)) {
         why_text_line("not judged", WHY_TEXT_LABEL, "the commands of the AI computer: the autopilot was never engaged");
     }
 }
@@ -176,8 +176,8 @@ static bool add_pending(text_t *text, const replay_text_t *replay, agv_fault_t f
 /** What the log ends in: a pass of something that had begun would be a lie. */
 static void print_pending(const replay_text_t *replay) {
     const char *label = "at the end";
-    for (int fault = 0; fault < (int)AGV_FAULT_COUNT; fault++) {
-        text_t text = {.used = 0u};
+    for (int fault = 0; fault < AGV_FAULT_COUNT; fault++) {
+        text_t text = {.used = 0};
         if (add_pending(&text, replay, (agv_fault_t)fault)) {
             why_text_line(label, WHY_TEXT_LABEL, text.bytes);
             label = "";
@@ -187,21 +187,21 @@ static void print_pending(const replay_text_t *replay) {
 
 void replay_text_remarks(const replay_text_t *replay, analysis_t *analysis) {
     const replay_clues_t clues = clues_of(replay);
-    text_t text = {.used = 0u};
-    if ((why_supervised_us(replay->why) > 0u) && add_not_supervised(&text, replay)) { /* else the page says it first */
+    text_t text = {.used = 0};
+    if ((why_supervised_us(replay->why) > 0) && add_not_supervised(&text, replay)) { /* else the page says it first */
         analysis_remark(analysis, ANALYSIS_NOT_SUPERVISED, text.bytes);
     }
     text_clear(&text);
     if (replay_text_goes_back(&text, replay->heard)) {
         analysis_remark(analysis, ANALYSIS_GOES_BACK, text.bytes);
     }
-    for (int fault = 0; fault < (int)AGV_FAULT_COUNT; fault++) {
+    for (int fault = 0; fault < AGV_FAULT_COUNT; fault++) {
         text_clear(&text);
         if (add_pending(&text, replay, (agv_fault_t)fault)) {
             analysis_remark(analysis, ANALYSIS_NOT_SUPERVISED, text.bytes);
         }
     }
-    for (int hint = 0; hint < (int)REPLAY_HINTS; hint++) {
+    for (int hint = 0; hint < REPLAY_HINTS; hint++) {
         text_clear(&text);
         if (replay_hint(&text, (replay_hint_t)hint, &clues)) {
             analysis_remark(analysis, ANALYSIS_HINT, text.bytes);
@@ -218,13 +218,13 @@ static void print_lines(const events_summary_t *summary) {
         [AGV_REJECTED_EXTENDED] = "frames with 29-bit identifiers",
         [AGV_REJECTED_ERROR] = "error frames",
     };
-    text_t text = {.used = 0u};
+    text_t text = {.used = 0};
     text_add_count(&text, "lines skipped", summary->skipped_lines);
     text_add_count(&text, "time stamps that went backwards", summary->backward_stamps);
-    for (size_t i = 0u; i < (size_t)AGV_REJECTED_KINDS; i++) {
+    for (size_t i = 0; i < AGV_REJECTED_KINDS; i++) {
         text_add_count(&text, kinds[i], summary->counters.rejected[i]);
     }
-    if (text.used > 0u) {
+    if (text.used > 0) {
         why_text_line("log", WHY_TEXT_LABEL, text.bytes);
     }
 }

@@ -30,11 +30,11 @@ static void choose(choice_t *choice, const agv_config_t *config, const why_trip_
     choice->trip_us = trip->t_us;
     choice->cause_us = (trip->cause_us < trip->t_us) ? trip->cause_us : trip->t_us;
     const uint64_t cycle_us = agv_message_cycle_ms((uint32_t)trip->message) * (uint64_t)US_PER_MS;
-    choice->before_us = (cycle_us * CYCLES_BEFORE > (uint64_t)NEAR_US) ? cycle_us * CYCLES_BEFORE : (uint64_t)NEAR_US;
+    choice->before_us = (cycle_us * CYCLES_BEFORE > NEAR_US) ? cycle_us * CYCLES_BEFORE : (uint64_t)NEAR_US;
 }
 
 static bool tells(const choice_t *choice, const series_frame_t *frame, uint32_t message) {
-    return !frame->sent && (message != (uint32_t)AGV_MSG_NONE) &&
+    return !frame->sent && (message != AGV_MSG_NONE) &&
            ((message == choice->telling[0]) || (message == choice->telling[1]));
 }
 
@@ -51,20 +51,20 @@ static bool is_shown(const choice_t *choice, const series_frame_t *frame, uint32
 
 static const char *data_text(const series_frame_t *frame, char text[DATA_SIZE]) {
     const size_t count = (frame->length < sizeof frame->data) ? frame->length : sizeof frame->data;
-    size_t used = 0u;
+    size_t used = 0;
     text[0] = '\0';
-    for (size_t i = 0u; i < count; i++) {
-        used += (size_t)snprintf(&text[used], DATA_SIZE - used, "%s%02X", (i > 0u) ? " " : "", frame->data[i]);
+    for (size_t i = 0; i < count; i++) {
+        used += (size_t)snprintf(&text[used], DATA_SIZE - used, "%s%02X", (i > 0) ? " " : "", frame->data[i]);
     }
     return text;
 }
 
 static uint32_t message_of(const choice_t *choice, const series_frame_t *frame) {
-    if ((frame->flags & (HAL_CAN_EXTENDED | HAL_CAN_ERROR)) != 0u) {
+    if ((frame->flags & (HAL_CAN_EXTENDED | HAL_CAN_ERROR)) != 0) {
         return UINT32_MAX;
     }
     const uint32_t message = agv_ids_find(&choice->ids, frame->id);
-    if (message != (uint32_t)AGV_MSG_NONE) {
+    if (message != AGV_MSG_NONE) {
         return message;
     }
     return (frame->id == choice->status_id) ? SIGNALS_STATUS_FRAME : UINT32_MAX;
@@ -72,8 +72,7 @@ static uint32_t message_of(const choice_t *choice, const series_frame_t *frame) 
 
 static json_t *frame_json(const choice_t *choice, const series_frame_t *frame) {
     const uint32_t message = message_of(choice, frame);
-    const bool has_signals =
-        (frame->flags == 0u) && (frame->length == (uint8_t)AGV_DLC) && (message <= SIGNALS_STATUS_FRAME);
+    const bool has_signals = (frame->flags == 0) && (frame->length == AGV_DLC) && (message <= SIGNALS_STATUS_FRAME);
     char id[CANDUMP_ID_SIZE];
     char data[DATA_SIZE];
     char signals[SIGNALS_TEXT_SIZE];
@@ -87,13 +86,13 @@ static json_t *frame_json(const choice_t *choice, const series_frame_t *frame) {
 
 void report_frames_add(json_t *trip_object, const agv_config_t *config, const why_trip_t *trip,
                        const series_t *series) {
-    size_t count = 0u;
+    size_t count = 0;
     const series_frame_t *frames = series_frames(series, trip->t_us, &count);
     json_t *array = json_array();
-    size_t left_out = 0u;
+    size_t left_out = 0;
     choice_t choice;
     choose(&choice, config, trip);
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         if (!is_shown(&choice, &frames[i], message_of(&choice, &frames[i]))) {
             continue;
         }

@@ -20,7 +20,7 @@ static json_t *time_or_null(uint64_t t_us) {
 
 static json_t *clock_json(uint64_t clock_us) {
     char text[CIVIL_LOCAL_SIZE];
-    return (clock_us != 0u) ? json_string(civil_local(text, clock_us)) : json_null();
+    return (clock_us != 0) ? json_string(civil_local(text, clock_us)) : json_null();
 }
 
 static json_t *trip_json(const report_page_t *page, const why_t *why, const series_t *series, size_t index) {
@@ -51,7 +51,7 @@ static json_t *trip_json(const report_page_t *page, const why_t *why, const seri
 
 static json_t *trips_json(const report_page_t *page, const why_t *why, const series_t *series) {
     json_t *trips = json_array();
-    for (size_t i = 0u; i < why_trip_count(why); i++) {
+    for (size_t i = 0; i < why_trip_count(why); i++) {
         json_add(trips, trip_json(page, why, series, i));
     }
     return trips;
@@ -59,7 +59,7 @@ static json_t *trips_json(const report_page_t *page, const why_t *why, const ser
 
 static json_t *found_faults_json(const why_t *why) {
     json_t *faults = json_array();
-    for (size_t i = 0u; i < why_fault_count(why); i++) {
+    for (size_t i = 0; i < why_fault_count(why); i++) {
         const why_fault_t *fault = why_fault(why, i);
         json_t *object = json_object();
         json_put(object, "name", json_text(agv_fault_name(fault->fault)));
@@ -78,7 +78,7 @@ static json_t *found_faults_json(const why_t *why) {
 
 static json_t *states_json(const why_t *why) {
     json_t *states = json_array();
-    for (size_t i = 0u; i < (size_t)WHY_STATES; i++) {
+    for (size_t i = 0; i < WHY_STATES; i++) {
         json_add(states, json_uint(why_state_us(why, i)));
     }
     return states;
@@ -89,7 +89,7 @@ static json_t *about_json(const report_page_t *page) {
     json_t *interfaces = json_array();
     char checksum[16];
     (void)snprintf(checksum, sizeof checksum, "%08" PRIX32, agv_config_checksum(page->config));
-    for (size_t side = 0u; side < (size_t)HAL_CAN_SIDES; side++) {
+    for (size_t side = 0; side < HAL_CAN_SIDES; side++) {
         json_add(interfaces, json_text(page->interfaces[side]));
     }
     json_put(about, "name", json_text(page->name));
@@ -97,8 +97,8 @@ static json_t *about_json(const report_page_t *page) {
     json_put(about, "clock", clock_json(page->clock_us));
     json_put(about, "clock_us", json_uint(page->clock_us % US_PER_MS));
     json_put(about, "recording", json_boolean(page->is_recording));
-    json_put(about, "gateway", json_boolean(page->config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY));
-    json_put(about, "shadow", json_boolean(page->config->shadow == (uint16_t)AGV_SHADOW_ON));
+    json_put(about, "gateway", json_boolean(page->config->topology == AGV_TOPOLOGY_GATEWAY));
+    json_put(about, "shadow", json_boolean(page->config->shadow == AGV_SHADOW_ON));
     json_put(about, "checksum", json_string(checksum));
     json_put(about, "version", json_string(HOST_SIM_VERSION));
     return about;
@@ -148,7 +148,7 @@ static void put_text(output_t *output, const char *text) {
             put(output, "&gt;");
             break;
         default:
-            (void)output_write(output, text, 1u);
+            (void)output_write(output, text, 1);
             break;
         }
     }
@@ -170,7 +170,7 @@ static void put_words(output_t *output, const sentence_t *sentence, const json_t
     put_paragraph(output, "cause", sentence->cause);
     put_paragraph(output, "action", sentence->action);
     put_paragraph(output, "outcome", sentence->outcome);
-    for (size_t i = 0u; i < json_array_size(remarks); i++) {
+    for (size_t i = 0; i < json_array_size(remarks); i++) {
         const json_t *remark = json_array_get(remarks, i);
         const bool is_hint = json_is_true(json_object_get(remark, "hint"));
         put(output, is_hint ? "<p class=\"remark hint\">Hint: " : "<p class=\"remark\">Not supervised: ");
@@ -182,12 +182,12 @@ static void put_words(output_t *output, const sentence_t *sentence, const json_t
 /** A piece of JSON inside a script element: a `<` could end the element. It stands in strings alone. */
 static int put_json(const char *bytes, size_t size, void *ctx) {
     output_t *output = ctx;
-    size_t begin = 0u;
-    for (size_t i = 0u; i < size; i++) {
+    size_t begin = 0;
+    for (size_t i = 0; i < size; i++) {
         if (bytes[i] == '<') {
             (void)output_write(output, &bytes[begin], i - begin);
             put(output, "\\u003c");
-            begin = i + 1u;
+            begin = i + 1;
         }
     }
     return output_write(output, &bytes[begin], size - begin) ? 0 : -1;
@@ -223,8 +223,8 @@ static void put_part(output_t *output, char part, const report_page_t *page, con
 
 void report_page_write(output_t *output, const report_page_t *page, const why_t *why, const series_t *series) {
     sentence_t sentence;
-    if (why_trip_count(why) > 0u) {
-        const why_trip_t *first = why_trip(why, 0u);
+    if (why_trip_count(why) > 0) {
+        const why_trip_t *first = why_trip(why, 0);
         sentence_trip(&sentence, page, first, series_output_opened_us(series, first->t_us));
     } else {
         sentence_no_trip(&sentence, why, series_end_us(series));

@@ -13,7 +13,7 @@ static void append(json_t *array, const char *name, const char *value, const cha
 }
 
 static void describe(const json_t *array, const char *unit, const char *meaning, bool weakens) {
-    json_t *object = json_array_get(array, json_array_size(array) - 1u);
+    json_t *object = json_array_get(array, json_array_size(array) - 1);
     (void)json_object_set_new(object, "unit", json_string(unit));
     (void)json_object_set_new(object, "meaning", json_string(meaning));
     (void)json_object_set_new(object, "weakens", json_boolean(weakens));
@@ -32,7 +32,7 @@ static void append_class(json_t *array, const agv_config_t *config, agv_fault_t 
 
 json_t *report_settings_json(const agv_config_t *config) {
     json_t *array = json_array();
-    for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
+    for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
         const agv_setting_info_t *info = agv_setting_info(i);
         const uint16_t value = agv_config_get(config, i);
         if (value != info->preset) {
@@ -44,7 +44,7 @@ json_t *report_settings_json(const agv_config_t *config) {
             describe(array, info->unit, info->meaning, agv_config_weakens(config, i));
         }
     }
-    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+    for (uint32_t i = 0; i < AGV_FAULT_COUNT; i++) {
         append_class(array, config, (agv_fault_t)i);
     }
     return array;

@@ -19,7 +19,7 @@ enum {
 #undef FAULT_PHRASE
     PHRASES
 };
-_Static_assert((int)PHRASES == (int)AGV_FAULT_COUNT, "a fault has no phrase in fault_phrases.def");
+_Static_assert((int)PHRASES == AGV_FAULT_COUNT, "a fault has no phrase in fault_phrases.def");
 
 const char *sentence_phrase(agv_fault_t fault) {
     static const char *const phrases[AGV_FAULT_COUNT] = {
@@ -27,7 +27,7 @@ const char *sentence_phrase(agv_fault_t fault) {
 #include "report/fault_phrases.def"
 #undef FAULT_PHRASE
     };
-    return ((uint32_t)fault < (uint32_t)AGV_FAULT_COUNT) ? phrases[fault] : "";
+    return ((uint32_t)fault < AGV_FAULT_COUNT) ? phrases[fault] : "";
 }
 
 const char *sentence_missing(unsigned index) {
@@ -73,8 +73,8 @@ static const char *at(uint64_t t_us, char text[TIME_SIZE]) {
 static const char *lasting(uint64_t from_us, uint64_t to_us, char text[TIME_SIZE]) {
     const uint64_t tenths = (to_us - from_us) / US_PER_TENTH;
     const uint64_t ms = shown_ms(from_us, to_us);
-    if (tenths < (uint64_t)EXACT_TENTHS) {
-        (void)snprintf(text, TIME_SIZE, "%" PRIu64 ".%" PRIu64 " ms", tenths / 10u, tenths % 10u);
+    if (tenths < EXACT_TENTHS) {
+        (void)snprintf(text, TIME_SIZE, "%" PRIu64 ".%" PRIu64 " ms", tenths / 10, tenths % 10);
     } else if (ms < MS_PER_S) {
         (void)snprintf(text, TIME_SIZE, "%" PRIu64 " ms", ms);
     } else {
@@ -133,7 +133,7 @@ static void say_phrase(char text[SENTENCE_SIZE], const why_trip_t *trip) {
         say(text, "the gateway withheld ");
         say_message(text, trip);
         say(text, ", because the VCU did not report autopilot");
-    } else if (trip->refused.count > 0u) {
+    } else if (trip->refused.count > 0) {
         say_message(text, trip);
         say(text, " came in a form that the protocol does not have");
     } else if (never_came(trip)) {
@@ -173,8 +173,8 @@ static void say_silence(char text[SENTENCE_SIZE], const why_trip_t *trip) {
     if (trip->next_us != WHY_NEVER) {
         say(text, " The next one came at %s.", at(trip->next_us, time));
     }
-    if (trip->refused.count > 0u) {
-        text_t refused = {.used = 0u};
+    if (trip->refused.count > 0) {
+        text_t refused = {.used = 0};
         why_words_refused(&refused, trip);
         say(text, " %s.", refused.bytes);
     }
@@ -188,7 +188,7 @@ static uint16_t budget_ms(const agv_config_t *config, agv_fault_t reason) {
     case AGV_FAULT_THROTTLE_DEVIATION:
         return config->throttle_deviation_ms;
     default:
-        return 0u;
+        return 0;
     }
 }
 
@@ -197,7 +197,7 @@ static void say_limit(char text[SENTENCE_SIZE], const agv_config_t *config, cons
     const uint16_t budget = budget_ms(config, trip->reason);
     const char *space = (text[0] != '\0') ? " " : "";
     say(text, "%sThe limit of this fault is %s", space, limit_text(trip, limit));
-    if (budget > 0u) {
+    if (budget > 0) {
         say(text, " for %u ms in all", budget);
     }
     say(text, ".");
@@ -233,7 +233,7 @@ static void say_output(char text[SENTENCE_SIZE], const why_trip_t *trip, uint64_
     char time[TIME_SIZE];
     if (opened_us == WHY_NEVER) {
         say(text, " The safety output stayed closed.");
-    } else if (opened_us == 0u) {
+    } else if (opened_us == 0) {
         say(text, " The safety output was open already.");
     } else if (opened_us <= trip->t_us + US_PER_MS) {
         say(text, " The safety output was opened at once.");
@@ -244,7 +244,7 @@ static void say_output(char text[SENTENCE_SIZE], const why_trip_t *trip, uint64_
 
 static void say_action(char text[SENTENCE_SIZE], const report_page_t *page, const why_trip_t *trip) {
     char time[TIME_SIZE];
-    const bool is_shadow = page->config->shadow == (uint16_t)AGV_SHADOW_ON;
+    const bool is_shadow = page->config->shadow == AGV_SHADOW_ON;
     say(text, "The supervisor tripped at %s (%s).", at(trip->t_us, time), agv_fault_name(trip->reason));
     if (is_shadow) {
         say(text, " It sent nothing, because it runs in shadow mode.");
@@ -253,7 +253,7 @@ static void say_action(char text[SENTENCE_SIZE], const report_page_t *page, cons
     } else {
         const uint64_t trip_us = sentence_trip_us(trip);
         const bool at_once = trip->first_safe_us < trip_us + (uint64_t)US_PER_TENTH;
-        const bool parks = page->config->park == (uint16_t)AGV_PARK_AT_ONCE;
+        const bool parks = page->config->park == AGV_PARK_AT_ONCE;
         say(text, " %s%s it began to send the safe commands: %sthrottle 0, autopilot off",
             at_once ? "At once" : lasting(trip_us, trip->first_safe_us, time), at_once ? "" : " later",
             parks ? "gear P, " : "");
@@ -288,7 +288,7 @@ static void say_outcome(char text[SENTENCE_SIZE], const report_page_t *page, con
     } else if (!page->is_recording) {
         say(text, "%sNo standstill of the wheels was reported until the end of the run.", space);
     }
-    const bool is_resettable = (agv_fault_flags((uint32_t)trip->reason) & AGV_FAULT_FLAG_UNRESETTABLE) == 0u;
+    const bool is_resettable = (agv_fault_flags((uint32_t)trip->reason) & AGV_FAULT_FLAG_UNRESETTABLE) == 0;
     say(text, is_resettable ? " Only the operator can end the safe state, by a reset at standstill in manual."
                             : " Only a power-on can end the safe state.");
 }
@@ -296,7 +296,7 @@ static void say_outcome(char text[SENTENCE_SIZE], const report_page_t *page, con
 void sentence_trip(sentence_t *sentence, const report_page_t *page, const why_trip_t *trip, uint64_t opened_us) {
     memset(sentence, 0, sizeof *sentence);
     const char *begin = "The supervisor stopped the vehicle";
-    if (page->is_recording || (page->config->shadow == (uint16_t)AGV_SHADOW_ON)) {
+    if (page->is_recording || (page->config->shadow == AGV_SHADOW_ON)) {
         begin = "The supervisor would have stopped this vehicle";
     } else if (stood_already(trip)) {
         begin = "The supervisor keeps the vehicle at standstill";
@@ -315,18 +315,18 @@ void sentence_trip(sentence_t *sentence, const report_page_t *page, const why_tr
 static void say_missing(char text[SENTENCE_SIZE], const why_t *why) {
     const uint16_t missing = why_missing(why);
     const char *between = " The supervisor stayed in INIT because ";
-    for (uint8_t bit = 0u; bit < 16u; bit++) {
-        if ((missing & (1u << bit)) != 0u) {
-            text_t details = {.used = 0u};
+    for (uint8_t bit = 0; bit < 16; bit++) {
+        if ((missing & (1u << bit)) != 0) {
+            text_t details = {.used = 0};
             why_words_missing(&details, why, bit);
             say(text, "%s%s", between, sentence_missing(bit));
-            if (details.used > 0u) {
+            if (details.used > 0) {
                 say(text, " (%s)", details.bytes);
             }
             between = "; ";
         }
     }
-    say(text, (missing != 0u) ? "." : "");
+    say(text, (missing != 0) ? "." : "");
 }
 
 void sentence_no_trip(sentence_t *sentence, const why_t *why, uint64_t end_us) {
@@ -334,7 +334,7 @@ void sentence_no_trip(sentence_t *sentence, const why_t *why, uint64_t end_us) {
     char supervised[TIME_SIZE];
     char whole[TIME_SIZE];
     memset(sentence, 0, sizeof *sentence);
-    if (supervised_us == 0u) {
+    if (supervised_us == 0) {
         say(sentence->headline, "Nothing was supervised: the supervisor never left INIT.");
         say(sentence->cause, "The run took %s.", at(end_us, whole));
         say_missing(sentence->cause, why);
@@ -347,16 +347,16 @@ void sentence_no_trip(sentence_t *sentence, const why_t *why, uint64_t end_us) {
         const uint64_t init_ms = shown_ms(supervised_us, end_us);
         say(sentence->cause, " For the other %s it was in INIT.", at(init_ms * US_PER_MS, whole));
     }
-    size_t in_init = 0u;
-    for (size_t i = 0u; i < why_fault_count(why); i++) {
+    size_t in_init = 0;
+    for (size_t i = 0; i < why_fault_count(why); i++) {
         in_init += why_did_not_trip(why_fault(why, i)) ? 1u : 0u;
     }
     const size_t warned = why_fault_count(why) - in_init;
-    if (warned > 0u) {
+    if (warned > 0) {
         say(sentence->action, "It warned of %zu fault%s.", warned, words_plural(warned));
     }
-    if (in_init > 0u) {
-        say(sentence->action, "%s%zu fault%s occurred in INIT, where nothing trips.", (warned > 0u) ? " " : "", in_init,
+    if (in_init > 0) {
+        say(sentence->action, "%s%zu fault%s occurred in INIT, where nothing trips.", (warned > 0) ? " " : "", in_init,
             words_plural(in_init));
     }
     if (!why_was_engaged(why)) {

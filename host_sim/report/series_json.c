@@ -25,7 +25,7 @@ static json_t *messages_json(const series_t *series) {
     static const char *const senders[] = {
         [MESSAGE_FROM_AI] = "AI computer", [MESSAGE_FROM_VCU] = "VCU", [MESSAGE_FROM_EPS] = "EPS"};
     json_t *messages = json_array();
-    for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {
+    for (uint32_t i = 0; i < AGV_MSG_COUNT; i++) {
         const agv_message_t message = (agv_message_t)i;
         const bool is_command = i < AGV_COMMAND_COUNT;
         char id[8];
@@ -70,13 +70,13 @@ static json_t *value_json(size_t lane, const series_change_t *change) {
     case SERIES_LANE_STATE:
         return json_text(agv_state_name((agv_state_t)change->b));
     case SERIES_LANE_MODE:
-        return (change->c == 0u) ? json_string(modes[change->a]) : json_null();
+        return (change->c == 0) ? json_string(modes[change->a]) : json_null();
     case SERIES_LANE_OUTPUT:
-        return json_string((change->a != 0u) ? "closed" : "open");
+        return json_string((change->a != 0) ? "closed" : "open");
     case SERIES_LANE_LED:
         return json_integer((int8_t)change->a);
     default:
-        return (change->c == 0u) ? gear_json(change->a) : json_null();
+        return (change->c == 0) ? gear_json(change->a) : json_null();
     }
 }
 
@@ -84,8 +84,8 @@ static json_t *lane_json(const series_changes_t *changes, size_t lane) {
     json_t *object = json_object();
     json_t *t = json_array();
     json_t *v = json_array();
-    uint64_t last = 0u;
-    for (size_t i = 0u; i < changes->count; i++) {
+    uint64_t last = 0;
+    for (size_t i = 0; i < changes->count; i++) {
         series_append_time(t, &last, changes->changes[i].t_us);
         json_add(v, value_json(lane, &changes->changes[i]));
     }
@@ -96,7 +96,7 @@ static json_t *lane_json(const series_changes_t *changes, size_t lane) {
 
 static json_t *lanes_json(const series_t *series) {
     json_t *object = json_object();
-    for (size_t lane = 0u; lane < (size_t)SERIES_LANE_FAULT; lane++) {
+    for (size_t lane = 0; lane < SERIES_LANE_FAULT; lane++) {
         json_put(object, lane_names[lane], lane_json(&series->lanes[lane], lane));
     }
     return object;
@@ -104,13 +104,13 @@ static json_t *lanes_json(const series_t *series) {
 
 static json_t *faults_json(const series_changes_t *faults) {
     json_t *array = json_array();
-    for (size_t i = 0u; i < faults->count; i++) {
+    for (size_t i = 0; i < faults->count; i++) {
         const series_change_t *change = &faults->changes[i];
         json_t *entry = json_array();
         json_add(entry, series_units(change->t_us));
         json_add(entry, json_text(agv_fault_name((agv_fault_t)change->a)));
         json_add(entry, json_text(agv_class_name((agv_fault_class_t)change->b)));
-        json_add(entry, json_integer((change->c != 0u) ? 1 : 0));
+        json_add(entry, json_integer((change->c != 0) ? 1 : 0));
         json_add(array, entry);
     }
     return array;
@@ -118,17 +118,17 @@ static json_t *faults_json(const series_changes_t *faults) {
 
 static json_t *notes_json(const series_changes_t *notes) {
     json_t *array = json_array();
-    for (size_t i = 0u; i < notes->count; i++) {
+    for (size_t i = 0; i < notes->count; i++) {
         const series_change_t *change = &notes->changes[i];
         char missing[MISSING_TEXT_SIZE];
         char text[TEXT_SIZE];
-        const char *what = (change->kind != (uint8_t)AGV_EVENT_RESET) ? "still in INIT"
-                           : (change->a != 0u)                        ? "reset accepted"
-                                                                      : "reset refused";
-        if (change->kind == (uint8_t)AGV_EVENT_CRASH) {
+        const char *what = (change->kind != AGV_EVENT_RESET) ? "still in INIT"
+                           : (change->a != 0)                ? "reset accepted"
+                                                             : "reset refused";
+        if (change->kind == AGV_EVENT_CRASH) {
             what = "the previous run was ended by the port";
         }
-        (void)snprintf(text, sizeof text, "%s%s%s", what, (change->missing != 0u) ? ", missing: " : "",
+        (void)snprintf(text, sizeof text, "%s%s%s", what, (change->missing != 0) ? ", missing: " : "",
                        missing_text(change->missing, missing));
         json_t *entry = json_array();
         json_add(entry, series_units(change->t_us));
@@ -140,8 +140,8 @@ static json_t *notes_json(const series_changes_t *notes) {
 
 json_t *series_json(const series_t *series) {
     json_t *object = json_object();
-    uint64_t left_out = 0u;
-    for (size_t lane = 0u; lane < (size_t)SERIES_LANES; lane++) {
+    uint64_t left_out = 0;
+    for (size_t lane = 0; lane < SERIES_LANES; lane++) {
         left_out += series->lanes[lane].left_out;
     }
     json_put(object, "end", series_units(series->end_us));

@@ -34,7 +34,7 @@ enum { SERIES_MODE_NEITHER, SERIES_MODE_MANUAL, SERIES_MODE_AUTOPILOT, SERIES_MO
 typedef struct {
     agv_config_t config;
     agv_ids_t ids;
-    uint8_t message_of[AGV_ID_MAX + 1u]; /**< AGV_MSG_NONE: none */
+    uint8_t message_of[AGV_ID_MAX + 1]; /**< AGV_MSG_NONE: none */
 } series_reader_t;
 
 /** Time since the last frame of each message. */

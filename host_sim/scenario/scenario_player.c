@@ -6,14 +6,14 @@ void scenario_player_init(scenario_player_t *player, const scenario_t *scenario,
     memset(player, 0, sizeof *player);
     player->scenario = scenario;
     player->events = events;
-    player->waiting_count = (scenario != NULL) ? scenario->waiting_count : 0u;
+    player->waiting_count = (scenario != NULL) ? scenario->waiting_count : 0;
 }
 
 /** A step that repeats is due again one period later; one whose end is reached is dropped. */
 static void plan_again(scenario_player_t *player, size_t step, uint64_t t_ms) {
     const scenario_step_t *repeated = &player->scenario->steps[step];
 
-    if ((repeated->again_every_ms == 0u) || (player->again_count == SCENARIO_AGAIN_MAX)) {
+    if ((repeated->again_every_ms == 0) || (player->again_count == SCENARIO_AGAIN_MAX)) {
         return;
     }
     player->again[player->again_count].step = step;
@@ -23,7 +23,7 @@ static void plan_again(scenario_player_t *player, size_t step, uint64_t t_ms) {
 
 /** The first repeated step that is due. */
 static const scenario_step_t *next_again(scenario_player_t *player, uint64_t t_ms) {
-    for (size_t i = 0u; i < player->again_count; i++) {
+    for (size_t i = 0; i < player->again_count; i++) {
         const scenario_step_t *step = &player->scenario->steps[player->again[i].step];
         if (player->again[i].due_ms > t_ms) {
             continue;
@@ -41,14 +41,14 @@ static const scenario_step_t *next_again(scenario_player_t *player, uint64_t t_m
 }
 
 static bool waits(const scenario_step_t *step) {
-    return step->after.kind != (uint8_t)SCENARIO_FROM_START;
+    return step->after.kind != SCENARIO_FROM_START;
 }
 
 /** The first step that is due because its event has come. */
 static const scenario_step_t *next_waiting(scenario_player_t *player, uint64_t t_ms) {
-    for (size_t i = 0u; (player->waiting_count > 0u) && (i < player->scenario->step_count); i++) {
+    for (size_t i = 0; (player->waiting_count > 0) && (i < player->scenario->step_count); i++) {
         const scenario_step_t *step = &player->scenario->steps[i];
-        uint64_t event_ms = 0u;
+        uint64_t event_ms = 0;
         if (waits(step) && !player->is_done[i] && scenario_events_find(player->events, step->after, &event_ms) &&
             (event_ms + step->at_ms <= t_ms)) {
             player->is_done[i] = true;
@@ -74,8 +74,8 @@ const scenario_step_t *scenario_player_next(scenario_player_t *player, uint64_t 
     }
     if ((player->next < player->scenario->step_count) && (player->scenario->steps[player->next].at_ms <= t_ms)) {
         player->next++;
-        plan_again(player, player->next - 1u, t_ms);
-        return &player->scenario->steps[player->next - 1u];
+        plan_again(player, player->next - 1, t_ms);
+        return &player->scenario->steps[player->next - 1];
     }
     return NULL;
 }

@@ -9,7 +9,7 @@ enum { PASSIVE_TEC = 200, BITS_PER_BYTE = 8 };
 static void pass_event(void *ctx, const session_event_t *event) {
     scenario_testbed_t *testbed = ctx;
     (void)scenario_events_note(&testbed->events, event);
-    for (size_t i = 0u; i < testbed->watch_count; i++) {
+    for (size_t i = 0; i < testbed->watch_count; i++) {
         if (testbed->watches[i].on_event != NULL) {
             testbed->watches[i].on_event(testbed->watches[i].ctx, event);
         }
@@ -37,7 +37,7 @@ static void pass_frame(void *ctx, const sim_bus_event_t *event) {
         return;
     }
     const int from = sender_of(testbed, side->side, event->sender);
-    for (size_t i = 0u; i < testbed->watch_count; i++) {
+    for (size_t i = 0; i < testbed->watch_count; i++) {
         if (testbed->watches[i].on_frame != NULL) {
             testbed->watches[i].on_frame(testbed->watches[i].ctx, event->end_us, side->side, from, event->frame);
         }
@@ -57,7 +57,7 @@ static void follow_power(scenario_testbed_t *testbed, vehicle_node_t node) {
 
 /** The bus is a classic one. A frame in FD format takes no time on it, and all nodes with power receive it. */
 static void deliver_past_wire(scenario_testbed_t *testbed) {
-    for (size_t i = 0u; i < testbed->past_wire_count; i++) {
+    for (size_t i = 0; i < testbed->past_wire_count; i++) {
         const scenario_past_wire_t *waiting = &testbed->past_wire[i];
         sim_bus_t *bus = &testbed->buses[waiting->side];
         for (int n = 0; n < VEHICLE_NODES; n++) {
@@ -67,7 +67,7 @@ static void deliver_past_wire(scenario_testbed_t *testbed) {
         }
         sim_bus_deliver(bus, testbed->hal.can[waiting->side].node, &waiting->frame);
     }
-    testbed->past_wire_count = 0u;
+    testbed->past_wire_count = 0;
 }
 
 static void send_past_wire(scenario_testbed_t *testbed, hal_can_side_t side, const hal_can_frame_t *frame) {
@@ -83,7 +83,7 @@ static void send_of_vehicle(void *ctx, vehicle_node_t from, hal_can_side_t side,
     scenario_testbed_t *testbed = ctx;
     sim_bus_node_t number = testbed->rogues[side];
 
-    if ((frame->flags & HAL_CAN_FD) != 0u) {
+    if ((frame->flags & HAL_CAN_FD) != 0) {
         send_past_wire(testbed, side, frame);
         return;
     }
@@ -105,7 +105,7 @@ static void station_hears(void *ctx, const hal_can_frame_t *frame) {
 }
 
 static void pass_received(const scenario_testbed_t *testbed, hal_can_side_t side, const hal_can_frame_t *frame) {
-    for (size_t i = 0u; i < testbed->watch_count; i++) {
+    for (size_t i = 0; i < testbed->watch_count; i++) {
         const scenario_watch_t *watch = &testbed->watches[i];
         if (watch->on_received != NULL) {
             watch->on_received(watch->ctx, sim_bus_now_us(&testbed->buses[side]), side, frame);
@@ -123,8 +123,8 @@ static void supervisor_hears(void *ctx, const hal_can_frame_t *arrived) {
         return;
     }
     /* What arrives with the end of this millisecond belongs to the next one. */
-    const uint64_t end_us = (testbed->t_ms + 1u) * US_PER_MS;
-    const uint64_t t_ms = testbed->t_ms + ((sim_bus_now_us(&testbed->buses[side->side]) >= end_us) ? 1u : 0u);
+    const uint64_t end_us = (testbed->t_ms + 1) * US_PER_MS;
+    const uint64_t t_ms = testbed->t_ms + ((sim_bus_now_us(&testbed->buses[side->side]) >= end_us) ? 1 : 0);
     while (sim_hal_receive(&testbed->hal, side->side, &frame)) {
         pass_received(testbed, side->side, &frame);
         session_frame(&testbed->session, side->side, &frame, t_ms);
@@ -163,19 +163,19 @@ bool scenario_testbed_init(scenario_testbed_t *testbed, const scenario_t *scenar
     const uint32_t phase_us = scenario->tick_phase_us;
     const sim_hal_config_t port = {.clock_start_ms = scenario->clock_start_ms,
                                    .clock_phase_us = (uint16_t)((US_PER_MS - phase_us) % US_PER_MS),
-                                   .watchdog_ms = (scenario->watchdog_ms != 0u) ? scenario->watchdog_ms
-                                                                                : scenario->config.watchdog_period_ms,
+                                   .watchdog_ms = (scenario->watchdog_ms != 0) ? scenario->watchdog_ms
+                                                                               : scenario->config.watchdog_period_ms,
                                    .reset_cause = scenario->reset_cause,
                                    .store = &testbed->store};
 
     testbed->config = scenario->config;
     testbed->ids = scenario->ids;
     testbed->tick_phase_us = scenario->tick_phase_us;
-    testbed->bus_count = scenario->vehicle.gateway ? HAL_CAN_SIDES : 1u;
+    testbed->bus_count = scenario->vehicle.gateway ? HAL_CAN_SIDES : 1;
     sim_store_init(&testbed->store);
     sim_hal_init(&testbed->hal, &port);
     vehicle_init(&testbed->vehicle, &scenario->vehicle, send_of_vehicle, testbed);
-    for (size_t side = 0u; side < testbed->bus_count; side++) {
+    for (size_t side = 0; side < testbed->bus_count; side++) {
         testbed->running[side] = &testbed->buses[side];
         if (!sim_bus_init(&testbed->buses[side], scenario->bitrate) || !attach(testbed, (hal_can_side_t)side)) {
             return false;
@@ -195,12 +195,12 @@ void scenario_testbed_watch(scenario_testbed_t *testbed, const scenario_watch_t 
     if (watch->on_frame == NULL) {
         return;
     }
-    for (size_t i = 0u; i < testbed->watch_count - 1u; i++) {
+    for (size_t i = 0; i < testbed->watch_count - 1; i++) {
         if (testbed->watches[i].on_frame != NULL) {
             return; /* the taps are there */
         }
     }
-    for (size_t side = 0u; side < testbed->bus_count; side++) {
+    for (size_t side = 0; side < testbed->bus_count; side++) {
         (void)sim_bus_add_tap(&testbed->buses[side], pass_frame, &testbed->sides[side]);
     }
 }
@@ -214,7 +214,7 @@ void scenario_testbed_start(scenario_testbed_t *testbed) {
 }
 
 static void power_supervisor(scenario_testbed_t *testbed, bool on) {
-    for (size_t side = 0u; side < testbed->bus_count; side++) {
+    for (size_t side = 0; side < testbed->bus_count; side++) {
         sim_bus_set_power(&testbed->buses[side], testbed->hal.can[side].node, on);
     }
     testbed->off = !on;
@@ -223,7 +223,7 @@ static void power_supervisor(scenario_testbed_t *testbed, bool on) {
 static void restart(scenario_testbed_t *testbed, hal_reset_cause_t cause, uint32_t off_ms) {
     sim_hal_reset(&testbed->hal, cause);
     testbed->halted_until_ms = testbed->t_ms + off_ms;
-    if (off_ms == 0u) {
+    if (off_ms == 0) {
         start_supervisor(testbed);
     } else {
         session_stop(&testbed->session, testbed->t_ms);
@@ -247,7 +247,7 @@ static void start_bounce(scenario_testbed_t *testbed, const scenario_action_t *a
     scenario_bounce_t *bounce = &testbed->bounce;
     memcpy(bounce->after_ms, action->bounce_ms, sizeof bounce->after_ms);
     bounce->count = action->bounce_count;
-    bounce->next = 0u;
+    bounce->next = 0;
     bounce->due_ms = testbed->t_ms + bounce->after_ms[0];
     testbed->hal.board.button_is_down = !testbed->hal.board.button_is_down;
 }
@@ -258,7 +258,7 @@ static void follow_bounce(scenario_testbed_t *testbed) {
     if ((bounce->next < bounce->count) && (testbed->t_ms >= bounce->due_ms)) {
         testbed->hal.board.button_is_down = !testbed->hal.board.button_is_down;
         bounce->next++;
-        bounce->due_ms += (bounce->next < bounce->count) ? bounce->after_ms[bounce->next] : 0u;
+        bounce->due_ms += (bounce->next < bounce->count) ? bounce->after_ms[bounce->next] : 0;
     }
 }
 
@@ -283,7 +283,7 @@ static void do_to_board(scenario_testbed_t *testbed, const scenario_action_t *ac
         break;
     case SCENARIO_BUTTON:
         board->button_is_down = action->on;
-        testbed->bounce.count = 0u;
+        testbed->bounce.count = 0;
         break;
     case SCENARIO_BUTTON_BOUNCES:
         start_bounce(testbed, action);
@@ -326,13 +326,13 @@ static void do_to_supervisor(scenario_testbed_t *testbed, const scenario_action_
         sim_bus_inject_overrun(bus, node);
         break;
     case SCENARIO_ERROR_PASSIVE:
-        sim_bus_set_error_counters(bus, node, action->on ? PASSIVE_TEC : 0u, 0u);
+        sim_bus_set_error_counters(bus, node, action->on ? PASSIVE_TEC : 0, 0);
         break;
     case SCENARIO_DELIVER:
         sim_bus_deliver(bus, node, &action->frame);
         break;
     case SCENARIO_CORRUPT_LATCH:
-        (void)sim_store_corrupt_latch(&testbed->store, 0u, 1u);
+        (void)sim_store_corrupt_latch(&testbed->store, 0, 1);
         break;
     case SCENARIO_FLIP_BIT:
         flip_bit(testbed, action->ms);
@@ -361,13 +361,13 @@ void scenario_testbed_do(scenario_testbed_t *testbed, const scenario_step_t *ste
 
 static void restore_bus(const sim_bus_t *bus, sim_bus_t *saved) {
     memcpy(saved->taps, bus->taps, sizeof saved->taps);
-    for (size_t i = 0u; i < SIM_BUS_NODES_MAX; i++) {
+    for (size_t i = 0; i < SIM_BUS_NODES_MAX; i++) {
         saved->nodes[i].config = bus->nodes[i].config;
     }
 }
 
 void scenario_testbed_restore(scenario_testbed_t *testbed, scenario_testbed_t *saved) {
-    for (size_t side = 0u; side < HAL_CAN_SIDES; side++) {
+    for (size_t side = 0; side < HAL_CAN_SIDES; side++) {
         restore_bus(&testbed->buses[side], &saved->buses[side]);
         saved->running[side] = testbed->running[side];
         saved->hal.can[side].bus = testbed->hal.can[side].bus;
@@ -392,19 +392,19 @@ static void step_supervisor(scenario_testbed_t *testbed) {
         wake(testbed);
     }
     if (testbed->t_ms >= testbed->halted_until_ms) {
-        for (size_t side = 0u; testbed->was_halted && (side < testbed->bus_count); side++) {
+        for (size_t side = 0; testbed->was_halted && (side < testbed->bus_count); side++) {
             supervisor_hears(&testbed->sides[side], NULL); /* frames that arrived meanwhile */
         }
         testbed->was_halted = false;
         session_tick(&testbed->session, testbed->t_ms, sim_hal_now_ms(&testbed->hal));
     }
     if (!testbed->off && sim_hal_poll(&testbed->hal)) {
-        restart(testbed, HAL_RESET_WATCHDOG, 0u);
+        restart(testbed, HAL_RESET_WATCHDOG, 0);
     }
 }
 
 static void run_buses(scenario_testbed_t *testbed, uint64_t until_us) {
-    if (testbed->bus_count == 1u) {
+    if (testbed->bus_count == 1) {
         sim_bus_run_until(&testbed->buses[HAL_CAN_VEHICLE], until_us);
     } else {
         sim_bus_run_all_until(testbed->running, testbed->bus_count, until_us);
@@ -412,7 +412,7 @@ static void run_buses(scenario_testbed_t *testbed, uint64_t until_us) {
 }
 
 void scenario_testbed_tick(scenario_testbed_t *testbed, uint64_t t_ms) {
-    const uint64_t until_us = (t_ms + 1u) * US_PER_MS;
+    const uint64_t until_us = (t_ms + 1) * US_PER_MS;
 
     testbed->t_ms = t_ms;
     follow_bounce(testbed);
@@ -423,10 +423,10 @@ void scenario_testbed_tick(scenario_testbed_t *testbed, uint64_t t_ms) {
             follow_power(testbed, (vehicle_node_t)n);
         }
     }
-    if (testbed->past_wire_count != 0u) {
+    if (testbed->past_wire_count != 0) {
         deliver_past_wire(testbed);
     }
-    if (testbed->tick_phase_us != 0u) {
+    if (testbed->tick_phase_us != 0) {
         run_buses(testbed, (t_ms * US_PER_MS) + testbed->tick_phase_us);
     }
     step_supervisor(testbed);

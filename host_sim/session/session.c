@@ -23,14 +23,13 @@ bool session_observe(session_t *session, session_observer_fn *fn, void *ctx) {
 }
 
 static void notify(const session_t *session, const session_event_t *event) {
-    for (size_t i = 0u; i < session->observer_count; i++) {
+    for (size_t i = 0; i < session->observer_count; i++) {
         session->observers[i].fn(session->observers[i].ctx, event);
     }
 }
 
 static void notify_output(const session_t *session, bool closed) {
-    const session_event_t event = {.t_ms = session->t_ms,
-                                   .recorded = {.kind = AGV_EVENT_OUTPUT, .a = closed ? 1u : 0u}};
+    const session_event_t event = {.t_ms = session->t_ms, .recorded = {.kind = AGV_EVENT_OUTPUT, .a = closed ? 1 : 0}};
     notify(session, &event);
 }
 
@@ -48,7 +47,7 @@ static void notify_left_out(const session_t *session, uint32_t fault, bool is_ac
                                    .recorded = {.kind = AGV_EVENT_FAULT,
                                                 .a = (uint8_t)fault,
                                                 .b = (uint8_t)(is_trip ? AGV_CLASS_TRIP : AGV_CLASS_WARN),
-                                                .c = is_active ? 1u : 0u,
+                                                .c = is_active ? 1 : 0,
                                                 .state = (uint8_t)agv_supervisor_state(supervisor),
                                                 .first_reason = (uint8_t)agv_supervisor_first_reason(supervisor)}};
     notify(session, &event);
@@ -66,9 +65,9 @@ static void tell_left_out(session_t *session) {
     if (is_same(&active, &before->active) && is_same(&trips, &before->trips)) {
         return;
     }
-    for (uint32_t fault = 0u; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
+    for (uint32_t fault = 0; fault < AGV_FAULT_COUNT; fault++) {
         const uint16_t left_out = session->recorder.rates[fault].left_out;
-        if ((left_out != 0u) && (left_out != before->left_out[fault])) {
+        if ((left_out != 0) && (left_out != before->left_out[fault])) {
             const bool is_active = agv_fault_is_in(&active, fault);
             notify_left_out(session, fault, is_active, agv_fault_is_in(is_active ? &trips : &before->trips, fault));
         }
@@ -83,7 +82,7 @@ static void notify_recorded(session_t *session, bool with_output) {
     for (; session->next != end; session->next++) {
         session_event_t event = {.t_ms = session->t_ms, .stopped_ms = session->stopped_ms};
         if (agv_recorder_get(&session->recorder, session->next, &event.recorded) &&
-            (with_output || (event.recorded.kind != (uint8_t)AGV_EVENT_OUTPUT))) {
+            (with_output || (event.recorded.kind != AGV_EVENT_OUTPUT))) {
             notify(session, &event);
         }
     }
@@ -103,8 +102,8 @@ static uint32_t first_of_run(const agv_recorder_t *recorder) {
     uint32_t first = end;
     agv_event_t newest;
     agv_event_t event;
-    if (agv_recorder_get(recorder, end - 1u, &newest)) {
-        while ((end - first < AGV_RECORDER_EVENTS) && agv_recorder_get(recorder, first - 1u, &event) &&
+    if (agv_recorder_get(recorder, end - 1, &newest)) {
+        while ((end - first < AGV_RECORDER_EVENTS) && agv_recorder_get(recorder, first - 1, &event) &&
                (event.run == newest.run)) {
             first--;
         }
@@ -116,7 +115,7 @@ static uint32_t first_of_run(const agv_recorder_t *recorder) {
 static void advance(session_t *session, uint64_t t_ms) {
     const bool supervised = agv_supervisor_state(&session->supervisor) != AGV_STATE_INIT;
     if (t_ms > session->counted_ms) {
-        session->supervised_ms += supervised ? (t_ms - session->counted_ms) : 0u;
+        session->supervised_ms += supervised ? (t_ms - session->counted_ms) : 0;
         session->counted_ms = t_ms;
     }
     session->t_ms = t_ms;
@@ -125,7 +124,7 @@ static void advance(session_t *session, uint64_t t_ms) {
 agv_counters_t session_counters(const session_t *session) {
     const agv_counters_t *last = agv_supervisor_counters(&session->supervisor);
     agv_counters_t sum = session->before;
-    for (size_t i = 0u; i < (size_t)AGV_REJECTED_KINDS; i++) {
+    for (size_t i = 0; i < AGV_REJECTED_KINDS; i++) {
         sum.rejected[i] += last->rejected[i];
     }
     sum.received += last->received;

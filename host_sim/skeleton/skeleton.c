@@ -25,10 +25,10 @@ typedef struct {
 static bool has_trip(const skeleton_facts_t *facts) {
     const char *log = facts->request->log;
 
-    if ((facts->trips == 0u) && (facts->states_us == 0u)) {
+    if ((facts->trips == 0) && (facts->states_us == 0)) {
         return report("%s: no fault to replay: nothing was supervised; host_sim replay says why", log);
     }
-    if ((facts->trips == 0u) || !facts->has_tripped) {
+    if ((facts->trips == 0) || !facts->has_tripped) {
         return report("%s: no fault to replay: the supervisor did not trip", log);
     }
     if ((facts->before != AGV_STATE_STANDBY) && (facts->before != AGV_STATE_ACTIVE)) {
@@ -72,8 +72,8 @@ static bool finish(work_t *work) {
     if (!skeleton_play(&work->run, &work->text, &work->facts.request->config, &again)) {
         return false;
     }
-    return (work->run.check.failure_count == 0u) || report("%s: the scenario does not pass as it was made: %s",
-                                                           work->facts.request->log, work->run.check.failures[0]);
+    return (work->run.check.failure_count == 0) || report("%s: the scenario does not pass as it was made: %s",
+                                                          work->facts.request->log, work->run.check.failures[0]);
 }
 
 static status_t make(work_t *work, const skeleton_request_t *request) {
@@ -107,7 +107,7 @@ status_t skeleton_make(const skeleton_request_t *request) {
     if (!check_files(request)) {
         return STATUS_UNUSABLE;
     }
-    work_t *work = calloc(1u, sizeof *work);
+    work_t *work = calloc(1, sizeof *work);
     if (work == NULL) {
         (void)report("out of memory");
         return STATUS_UNUSABLE;

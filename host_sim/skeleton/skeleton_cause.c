@@ -12,7 +12,7 @@ enum { LONGEST_MS = 60000, SHORT_MS = 10000, DECISION_MAX_MS = 5000, HEARD_MS = 
 
 /** Begin a step of the cause. */
 static void begin_step(skeleton_plan_t *plan, uint32_t later_ms) {
-    const bool is_first = plan->steps.used == 0u;
+    const bool is_first = plan->steps.used == 0;
     if (is_first) {
         text_add(&plan->steps, "  - {name: fault, at_ms: %" PRIu32 ", ", plan->cause_ms);
     } else {
@@ -28,7 +28,7 @@ static const char *node_of(agv_message_t message) {
 static void add_silence(skeleton_plan_t *plan) {
     const why_trip_t *trip = &plan->facts->trip;
 
-    begin_step(plan, 0u);
+    begin_step(plan, 0);
     text_add(&plan->steps, "%s: ", node_of(trip->message));
     if (trip->kind == WHY_STUCK) {
         text_add(&plan->steps, "freeze_counter}\n");
@@ -42,11 +42,11 @@ static void add_silence(skeleton_plan_t *plan) {
 /** The field of a message that shows the fault; NULL: none does. */
 static const scenario_field_row_t *field_of(const why_trip_t *trip) {
     const why_row_t *why = why_row(trip->reason);
-    const scenario_field_row_t *field = scenario_field(0u);
+    const scenario_field_row_t *field = scenario_field(0);
 
-    for (size_t i = 1u; field != NULL; i++) {
+    for (size_t i = 1; field != NULL; i++) {
         const uint8_t byte =
-            (why->mask != 0u) ? why->byte : ((trip->message == AGV_MSG_EPS_STATUS) ? EPS_MODE_BYTE : field->byte);
+            (why->mask != 0) ? why->byte : ((trip->message == AGV_MSG_EPS_STATUS) ? EPS_MODE_BYTE : field->byte);
         if ((field->message == trip->message) && (field->byte == byte) && (strcmp(field->name, "counter") != 0) &&
             (strcmp(field->name, "speed") != 0)) {
             return field;
@@ -60,19 +60,19 @@ static const scenario_field_row_t *field_of(const why_trip_t *trip) {
 static bool add_value(skeleton_plan_t *plan) {
     const why_trip_t *trip = &plan->facts->trip;
     const scenario_field_row_t *field = (trip->message != AGV_MSG_NONE) ? field_of(trip) : NULL;
-    uint32_t value = 0u;
+    uint32_t value = 0;
 
-    if ((field == NULL) || (trip->evidence_count == 0u)) {
+    if ((field == NULL) || (trip->evidence_count == 0)) {
         return false;
     }
-    const hal_can_frame_t *frame = &trip->evidence[trip->evidence_count - 1u].frame;
-    for (unsigned i = 0u; i < field->size; i++) {
+    const hal_can_frame_t *frame = &trip->evidence[trip->evidence_count - 1].frame;
+    for (unsigned i = 0; i < field->size; i++) {
         value |= (uint32_t)(frame->data[field->byte + i] & field->mask) >> field->shift << (unsigned)(BITS_OF_BYTE * i);
     }
-    begin_step(plan, 0u);
-    if ((trip->kind == WHY_SCORE) && (why_row(trip->reason)->mask != 0u)) {
+    begin_step(plan, 0);
+    if ((trip->kind == WHY_SCORE) && (why_row(trip->reason)->mask != 0)) {
         text_add(&plan->steps, "vcu: set, field: alarms, value: 00h}\n"); /* its own alarm would come first */
-        begin_step(plan, 0u);
+        begin_step(plan, 0);
     }
     text_add(&plan->steps, "%s: set, field: %s, value: %02" PRIX32 "h}\n", node_of(trip->message), field->name, value);
     return true;
@@ -81,10 +81,10 @@ static bool add_value(skeleton_plan_t *plan) {
 /** The last frame of the evidence as a raw frame, as it was in the log. @return false: there is none */
 static bool add_raw_frame(skeleton_plan_t *plan) {
     const why_trip_t *trip = &plan->facts->trip;
-    if (trip->evidence_count == 0u) {
+    if (trip->evidence_count == 0) {
         return false;
     }
-    const why_evidence_t *evidence = &trip->evidence[trip->evidence_count - 1u];
+    const why_evidence_t *evidence = &trip->evidence[trip->evidence_count - 1];
     const hal_can_frame_t *frame = &evidence->frame;
     static const struct {
         uint8_t flag;
@@ -92,14 +92,14 @@ static bool add_raw_frame(skeleton_plan_t *plan) {
     } kinds[] = {
         {HAL_CAN_EXTENDED, ", kind: extended"}, {HAL_CAN_REMOTE, ", kind: remote"}, {HAL_CAN_FD, ", kind: fd"}};
 
-    begin_step(plan, 0u);
+    begin_step(plan, 0);
     text_add(&plan->steps, "bus: send, id: %03" PRIX32 "h, bytes: \"", frame->id);
-    for (uint8_t i = 0u; (i < frame->length) && (i < AGV_DLC); i++) {
-        text_add(&plan->steps, "%s%02X", (i > 0u) ? " " : "", frame->data[i]);
+    for (uint8_t i = 0; (i < frame->length) && (i < AGV_DLC); i++) {
+        text_add(&plan->steps, "%s%02X", (i > 0) ? " " : "", frame->data[i]);
     }
     text_add(&plan->steps, "\"");
-    for (size_t i = 0u; i < sizeof kinds / sizeof kinds[0]; i++) {
-        if ((frame->flags & kinds[i].flag) != 0u) {
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+        if ((frame->flags & kinds[i].flag) != 0) {
             text_add(&plan->steps, "%s", kinds[i].kind);
             break;
         }
@@ -111,11 +111,11 @@ static bool add_raw_frame(skeleton_plan_t *plan) {
 /** A command whose value is invalid, or one of another length or format. */
 static bool add_bad_command(skeleton_plan_t *plan) {
     const why_trip_t *trip = &plan->facts->trip;
-    if (trip->evidence_count == 0u) {
+    if (trip->evidence_count == 0) {
         return false;
     }
-    const hal_can_frame_t *frame = &trip->evidence[trip->evidence_count - 1u].frame;
-    const bool is_whole = (frame->flags == 0u) && (frame->length == (uint8_t)AGV_DLC);
+    const hal_can_frame_t *frame = &trip->evidence[trip->evidence_count - 1].frame;
+    const bool is_whole = (frame->flags == 0) && (frame->length == AGV_DLC);
     return is_whole ? add_value(plan) : add_raw_frame(plan);
 }
 
@@ -146,7 +146,7 @@ bool skeleton_cause_by_evidence(skeleton_plan_t *plan) {
 /** Add a step of a row, with its placeholders filled in. @return what follows it */
 static const char *add_words(skeleton_plan_t *plan, const campaign_row_t *row, const char *at) {
     const agv_config_t *config = &plan->facts->request->config;
-    const bool is_table = config->id_set == (uint16_t)AGV_ID_SET_TABLE;
+    const bool is_table = config->id_set == AGV_ID_SET_TABLE;
 
     for (; (*at != '|') && (*at != '/') && (*at != '\0'); at++) {
         if (*at != '$') {
@@ -155,9 +155,9 @@ static const char *add_words(skeleton_plan_t *plan, const campaign_row_t *row, c
         }
         at++;
         if (*at == 'n') {
-            text_add(&plan->steps, "%" PRIu32, (row->lowest + row->highest) / 2u);
+            text_add(&plan->steps, "%" PRIu32, (row->lowest + row->highest) / 2);
         } else if (*at == 's') {
-            text_add(&plan->steps, "%s", (config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? "ai" : "vehicle");
+            text_add(&plan->steps, "%s", (config->topology == AGV_TOPOLOGY_GATEWAY) ? "ai" : "vehicle");
         } else {
             text_add(&plan->steps, "%03Xh",
                      (unsigned)agv_message_id(AGV_MSG_TURN_SIGNAL_COMMAND,
@@ -172,11 +172,11 @@ bool skeleton_cause_by_campaign(skeleton_plan_t *plan) {
     const campaign_row_t *row = campaign_row(plan->facts->trip.reason);
 
     text_clear(&plan->steps);
-    if ((row == NULL) || (row->top[0] != '\0') || ((row->flags & CAMPAIGN_START) != 0u)) {
+    if ((row == NULL) || (row->top[0] != '\0') || ((row->flags & CAMPAIGN_START) != 0)) {
         return false;
     }
     for (const char *at = row->steps; at != NULL;) {
-        uint32_t later_ms = 0u;
+        uint32_t later_ms = 0;
         if (*at == '+') {
             for (at++; *at != ' '; at++) {
                 later_ms = (later_ms * (uint32_t)DECIMAL) + (uint32_t)(*at - '0');
@@ -191,7 +191,7 @@ bool skeleton_cause_by_campaign(skeleton_plan_t *plan) {
 
 /** Cut what is longer than people wait for. */
 static uint64_t cut(skeleton_plan_t *plan, uint64_t ms, uint32_t shorter_ms) {
-    const bool is_longer = ms > (uint64_t)LONGEST_MS;
+    const bool is_longer = ms > LONGEST_MS;
     plan->is_shorter = plan->is_shorter || is_longer;
     return is_longer ? (uint64_t)shorter_ms : ms;
 }
@@ -204,7 +204,7 @@ static void plan_early(skeleton_plan_t *plan, uint32_t ready_ms) {
 
     engage_ms = (engage_ms < ready_ms) ? ready_ms : engage_ms;
     plan->engage_ms = (uint32_t)engage_ms;
-    plan->cause_ms = 0u;
+    plan->cause_ms = 0;
     if (skeleton_was_heard(facts)) {
         const uint64_t lead_ms = engaged_ms - skeleton_cause_ms(facts);
         plan->cause_ms =
@@ -224,9 +224,9 @@ void skeleton_plan_times(skeleton_plan_t *plan) {
         return;
     }
     uint64_t before_ms = cut(plan, is_engaged ? facts->engaged_ms : cause_ms, (uint32_t)DRIVE_EARLIEST_MS);
-    const uint64_t since_ms = cut(plan, is_engaged ? cause_ms - facts->engaged_ms : 0u, (uint32_t)SHORT_MS);
+    const uint64_t since_ms = cut(plan, is_engaged ? cause_ms - facts->engaged_ms : 0, (uint32_t)SHORT_MS);
     before_ms = (before_ms < ready_ms) ? ready_ms : before_ms;
-    plan->engage_ms = is_engaged ? (uint32_t)before_ms : 0u;
+    plan->engage_ms = is_engaged ? (uint32_t)before_ms : 0;
     plan->cause_ms = (uint32_t)(before_ms + since_ms);
     plan->duration_ms = plan->cause_ms + (uint32_t)DECISION_MAX_MS;
 }

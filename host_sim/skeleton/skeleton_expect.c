@@ -10,15 +10,14 @@ enum { ROOM_MS = 5, ROUND_MS = 10, SAFE_FRAME_MS = 5 };
 
 /** After some event, rounded up. */
 static uint32_t rounded(uint32_t ms) {
-    return ((ms / (uint32_t)ROUND_MS) + 1u) * (uint32_t)ROUND_MS;
+    return ((ms / ROUND_MS) + 1) * (uint32_t)ROUND_MS;
 }
 
 /** The step or event that a change of state counts from; NULL: the start of the run. */
 static const char *anchor_of(const skeleton_plan_t *plan, const skeleton_seen_t *seen, const skeleton_change_t *change,
                              uint32_t *since_ms) {
     const bool is_early = (plan->engage_ms > plan->cause_ms) && (change->t_ms >= plan->engage_ms);
-    if ((change->to == (uint8_t)AGV_STATE_TRIPPED) && (change->t_ms == seen->trip_ms) &&
-        (change->t_ms >= plan->cause_ms)) {
+    if ((change->to == AGV_STATE_TRIPPED) && (change->t_ms == seen->trip_ms) && (change->t_ms >= plan->cause_ms)) {
         *since_ms = change->t_ms - (is_early ? plan->engage_ms : plan->cause_ms);
         return is_early ? "engages" : "fault";
     }
@@ -26,7 +25,7 @@ static const char *anchor_of(const skeleton_plan_t *plan, const skeleton_seen_t 
         *since_ms = change->t_ms - seen->trip_ms;
         return "trip";
     }
-    if ((change->to == (uint8_t)AGV_STATE_ACTIVE) && (plan->engage_ms != 0u) && (change->t_ms >= plan->engage_ms) &&
+    if ((change->to == AGV_STATE_ACTIVE) && (plan->engage_ms != 0) && (change->t_ms >= plan->engage_ms) &&
         (is_early || (change->t_ms < plan->cause_ms))) {
         *since_ms = change->t_ms - plan->engage_ms;
         return "engages";
@@ -36,12 +35,12 @@ static const char *anchor_of(const skeleton_plan_t *plan, const skeleton_seen_t 
 
 static void add_time(text_t *text, const skeleton_plan_t *plan, const skeleton_seen_t *seen,
                      const skeleton_change_t *change) {
-    uint32_t since_ms = 0u;
+    uint32_t since_ms = 0;
     const char *anchor = anchor_of(plan, seen, change, &since_ms);
 
     if (anchor != NULL) {
         text_add(text, "after: %s, within: %" PRIu32 "ms}\n", anchor, rounded(since_ms));
-    } else if (change->t_ms == 0u) {
+    } else if (change->t_ms == 0) {
         text_add(text, "at_ms: 0}\n");
     } else {
         text_add(text, "at_ms: [%" PRIu32 ", %" PRIu32 "]}\n", change->t_ms - (uint32_t)ROOM_MS,
@@ -51,7 +50,7 @@ static void add_time(text_t *text, const skeleton_plan_t *plan, const skeleton_s
 
 static void add_states(text_t *text, const skeleton_plan_t *plan, const skeleton_seen_t *seen) {
     text_add(text, "  states:\n");
-    for (size_t i = 0u; i < seen->count; i++) {
+    for (size_t i = 0; i < seen->count; i++) {
         const skeleton_change_t *change = &seen->changes[i];
         const char *reason = agv_fault_name((agv_fault_t)change->reason);
         if (!change->is_output) {
@@ -66,11 +65,11 @@ static void add_states(text_t *text, const skeleton_plan_t *plan, const skeleton
 
 static void add_outputs(text_t *text, const skeleton_plan_t *plan, const skeleton_seen_t *seen) {
     bool any = false;
-    for (size_t i = 0u; i < seen->count; i++) {
+    for (size_t i = 0; i < seen->count; i++) {
         const skeleton_change_t *change = &seen->changes[i];
         if (change->is_output) {
             text_add(text, "%s    - {closed: %s, ", any ? "" : "  safety_output:\n",
-                     (change->to != 0u) ? "true" : "false");
+                     (change->to != 0) ? "true" : "false");
             add_time(text, plan, seen, change);
             any = true;
         }
@@ -90,7 +89,7 @@ void skeleton_expect(text_t *text, const skeleton_plan_t *plan, const skeleton_s
     add_outputs(text, plan, seen);
     text_add(text, "  faults:\n    - {name: %s, class: trip, after: fault, within: %" PRIu32 "ms}\n",
              agv_fault_name((agv_fault_t)seen->reason), rounded(seen->trip_ms - plan->cause_ms));
-    if ((seen->end.gear == (uint8_t)AGV_GEAR_P) && !seen->end.autopilot && (seen->end.speed_mm_s == 0)) {
+    if ((seen->end.gear == AGV_GEAR_P) && !seen->end.autopilot && (seen->end.speed_mm_s == 0)) {
         text_add(text, "  vehicle:\n    - {at_ms: %" PRIu32 ", gear: P, mode: manual, speed_mm_s: 0}\n",
                  plan->duration_ms);
     }
@@ -118,14 +117,14 @@ static void on_event(void *ctx, const session_event_t *event) {
     if (event->is_led) {
         return;
     }
-    if (recorded->kind == (uint8_t)AGV_EVENT_OUTPUT) {
-        const bool opens_at_start = (recorded->a == 0u) && (event->t_ms == 0u);
+    if (recorded->kind == AGV_EVENT_OUTPUT) {
+        const bool opens_at_start = (recorded->a == 0) && (event->t_ms == 0);
         if (!opens_at_start) {
             note_change(seen, event, true);
         }
-    } else if (recorded->kind == (uint8_t)AGV_EVENT_STATE) {
+    } else if (recorded->kind == AGV_EVENT_STATE) {
         note_change(seen, event, false);
-        if ((recorded->b == (uint8_t)AGV_STATE_TRIPPED) && !seen->has_tripped) {
+        if ((recorded->b == AGV_STATE_TRIPPED) && !seen->has_tripped) {
             seen->has_tripped = true;
             seen->reason = recorded->c;
             seen->trip_ms = (uint32_t)event->t_ms;
@@ -144,10 +143,10 @@ typedef struct {
 static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
     watching_t *watching = ctx;
     skeleton_seen_t *seen = watching->seen;
-    const uint64_t t_ms = t_us / 1000u;
+    const uint64_t t_ms = t_us / 1000;
 
     if ((from == SCENARIO_FROM_SUPERVISOR) && (side == HAL_CAN_VEHICLE) && seen->has_tripped &&
-        (frame->id == watching->gear_id) && (frame->length == AGV_DLC) && (frame->data[0] == (uint8_t)AGV_GEAR_P) &&
+        (frame->id == watching->gear_id) && (frame->length == AGV_DLC) && (frame->data[0] == AGV_GEAR_P) &&
         (t_ms >= seen->trip_ms) && (t_ms <= seen->trip_ms + (uint32_t)SAFE_FRAME_MS)) {
         seen->gear_p_came = true;
     }
@@ -156,7 +155,7 @@ static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, co
 bool skeleton_play(scenario_run_t *run, const text_t *text, const agv_config_t *config, skeleton_seen_t *seen) {
     const scenario_options_t options = {.config = *config, .topology = -1, .id_set = -1};
 
-    *seen = (skeleton_seen_t){.count = 0u};
+    *seen = (skeleton_seen_t){.count = 0};
     if (!scenario_read_text(&run->scenario, "skeleton", text->bytes, &options)) {
         return false;
     }

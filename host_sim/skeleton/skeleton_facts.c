@@ -19,13 +19,13 @@ static void on_fact_event(void *ctx, const session_event_t *event) {
     skeleton_facts_t *facts = ctx;
     const agv_event_t *recorded = &event->recorded;
 
-    if (event->is_led || facts->has_tripped || (recorded->kind != (uint8_t)AGV_EVENT_STATE)) {
+    if (event->is_led || facts->has_tripped || (recorded->kind != AGV_EVENT_STATE)) {
         return;
     }
-    if (recorded->b == (uint8_t)AGV_STATE_ACTIVE) {
+    if (recorded->b == AGV_STATE_ACTIVE) {
         facts->engaged_ms = event->t_ms;
     }
-    if (recorded->b == (uint8_t)AGV_STATE_TRIPPED) {
+    if (recorded->b == AGV_STATE_TRIPPED) {
         facts->before = (agv_state_t)recorded->a;
         facts->has_tripped = true;
     }
@@ -37,13 +37,13 @@ static void on_end(void *ctx, const why_t *why) {
     facts->has_ended = true;
     facts->trips = why_trip_count(why);
     facts->states_us = why_supervised_us(why);
-    if (facts->trips > 0u) {
-        facts->trip = *why_trip(why, 0u);
+    if (facts->trips > 0) {
+        facts->trip = *why_trip(why, 0);
         why_words_cause(&facts->why, why, &facts->trip);
     }
-    facts->more = 0u;
-    for (size_t i = 1u; i < facts->trips; i++) {
-        facts->more += (why_trip(why, i)->kind == WHY_VEHICLE) ? 0u : 1u;
+    facts->more = 0;
+    for (size_t i = 1; i < facts->trips; i++) {
+        facts->more += (why_trip(why, i)->kind == WHY_VEHICLE) ? 0 : 1;
     }
 }
 
@@ -73,7 +73,7 @@ uint64_t skeleton_cause_ms(const skeleton_facts_t *facts) {
     const bool by_silence = (trip->kind == WHY_SILENCE) || (trip->kind == WHY_STUCK);
 
     if (by_silence && (trip->last_good_us != WHY_NEVER)) {
-        return (trip->last_good_us / US_PER_MS) + 1u;
+        return (trip->last_good_us / US_PER_MS) + 1;
     }
     return ((trip->cause_us != WHY_NEVER) ? trip->cause_us : trip->t_us) / US_PER_MS;
 }
@@ -130,7 +130,7 @@ static void take_frame(listening_t *listening, const hal_can_frame_t *frame, uin
     skeleton_facts_t *facts = listening->facts;
     const agv_message_t message = (agv_message_t)agv_ids_find(&listening->ids, frame->id);
 
-    if ((frame->flags != 0u) || (frame->length != AGV_DLC) || (message == AGV_MSG_NONE)) {
+    if ((frame->flags != 0) || (frame->length != AGV_DLC) || (message == AGV_MSG_NONE)) {
         return;
     }
     if ((t_us > listening->silent_from_us) && (t_us < listening->silent_to_us) &&
@@ -149,8 +149,8 @@ static void take_frame(listening_t *listening, const hal_can_frame_t *frame, uin
 
 static bool listen(listening_t *listening, candump_log_t *log) {
     candump_record_t record;
-    uint64_t first_us = 0u;
-    uint64_t last_us = 0u;
+    uint64_t first_us = 0;
+    uint64_t last_us = 0;
     bool is_first = true;
     candump_result_t result = candump_next(log, &record);
 
@@ -174,14 +174,14 @@ static void prepare(listening_t *listening) {
         listening->silent_from_us =
             skeleton_was_heard(facts)
                 ? trip->last_good_us + ((uint64_t)agv_message_cycle_ms(trip->message) * (uint64_t)US_PER_MS)
-                : 0u;
+                : 0;
         listening->silent_to_us = trip->t_us + ((uint64_t)LISTEN_MS * (uint64_t)US_PER_MS);
     }
 }
 
 static bool read_again(skeleton_facts_t *facts) {
     listening_t listening = {.facts = facts};
-    candump_log_t *log = calloc(1u, sizeof *log);
+    candump_log_t *log = calloc(1, sizeof *log);
     if (log == NULL) {
         return report("out of memory");
     }
@@ -190,7 +190,7 @@ static bool read_again(skeleton_facts_t *facts) {
     candump_close(log);
     free(log);
     facts->is_driven = listening.heard_gear && listening.heard_throttle &&
-                       ((facts->gear == (uint8_t)AGV_GEAR_D) || (facts->gear == (uint8_t)AGV_GEAR_R));
+                       ((facts->gear == AGV_GEAR_D) || (facts->gear == AGV_GEAR_R));
     return good;
 }
 
@@ -208,5 +208,5 @@ bool skeleton_facts_read(skeleton_facts_t *facts, const skeleton_request_t *requ
     if ((replay_run(&replay) != STATUS_OK) || !facts->has_ended) {
         return false;
     }
-    return (facts->trips == 0u) || !facts->has_tripped || read_again(facts);
+    return (facts->trips == 0) || !facts->has_tripped || read_again(facts);
 }

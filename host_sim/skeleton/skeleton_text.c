@@ -15,7 +15,7 @@ enum { NAME_SHOWN_MAX = 40, DRIVE_BEFORE_MS = 100, PERMILLE_PER_PCT = 10, DDEG_P
 static void add_log_name(text_t *text, const char *path) {
     const char *slash = strrchr(path, '/');
     const char *name = (slash != NULL) ? &slash[1] : path;
-    for (size_t i = 0u; (name[i] != '\0') && (i < (size_t)NAME_SHOWN_MAX); i++) {
+    for (size_t i = 0; (name[i] != '\0') && (i < NAME_SHOWN_MAX); i++) {
         const char letter = name[i];
         const bool is_plain = (letter >= ' ') && (letter <= '~') && (letter != '"') && (letter != '\\');
         text_add(text, "%c", is_plain ? letter : '?');
@@ -36,9 +36,9 @@ static void add_head(text_t *text, const skeleton_plan_t *plan) {
     text_add(text, ": %s\"\nshows: [%s]\ndescription: |\n  The log: tripped at ", reason, reason);
     why_words_time(text, facts->trip.t_us);
     text_add(text, ", %s.\n  %s.\n", reason, facts->why.bytes);
-    if (facts->more > 0u) {
+    if (facts->more > 0) {
         text_add(text, "  It has %zu more trip%s not shown here.\n", facts->more,
-                 (facts->more == 1u) ? ", which is" : "s, which are");
+                 (facts->more == 1) ? ", which is" : "s, which are");
     }
     if (plan->is_shorter) {
         text_add(text, "  The log is longer: the time before the fault was cut.\n");
@@ -48,10 +48,9 @@ static void add_head(text_t *text, const skeleton_plan_t *plan) {
 /** The settings that are not the default, and where the messages are. */
 static void add_settings(text_t *text, const agv_config_t *config) {
     bool any = false;
-    text_add(text, "topology: %s\nid_set: %s\n",
-             (config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? "gateway" : "shared",
-             (config->id_set == (uint16_t)AGV_ID_SET_TABLE) ? "table" : "heading");
-    for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
+    text_add(text, "topology: %s\nid_set: %s\n", (config->topology == AGV_TOPOLOGY_GATEWAY) ? "gateway" : "shared",
+             (config->id_set == AGV_ID_SET_TABLE) ? "table" : "heading");
+    for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
         const agv_setting_info_t *info = agv_setting_info(i);
         char value[CONFIG_VALUE_SIZE];
         if ((agv_config_get(config, i) != info->preset) && (strcmp(info->name, "topology") != 0) &&
@@ -61,7 +60,7 @@ static void add_settings(text_t *text, const agv_config_t *config) {
             any = true;
         }
     }
-    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+    for (uint32_t i = 0; i < AGV_FAULT_COUNT; i++) {
         const agv_fault_t fault = (agv_fault_t)i;
         const bool is_trip = agv_config_is_trip(config, fault);
         char key[CONFIG_CLASS_KEY_SIZE];
@@ -74,17 +73,17 @@ static void add_settings(text_t *text, const agv_config_t *config) {
 }
 
 static char gear_letter(uint8_t gear) {
-    return (gear == (uint8_t)AGV_GEAR_R) ? 'R' : 'D';
+    return (gear == AGV_GEAR_R) ? 'R' : 'D';
 }
 
 /** How it was driven before the fault. */
 static void add_driver(text_t *text, const skeleton_plan_t *plan) {
     const skeleton_facts_t *facts = plan->facts;
-    const unsigned throttle_pct = (unsigned)facts->throttle_permille / (unsigned)PERMILLE_PER_PCT;
-    const uint32_t start_ms = (plan->engage_ms != 0u) ? plan->engage_ms : plan->cause_ms;
+    const unsigned throttle_pct = (unsigned)facts->throttle_permille / PERMILLE_PER_PCT;
+    const uint32_t start_ms = (plan->engage_ms != 0) ? plan->engage_ms : plan->cause_ms;
     const uint32_t drive_ms = start_ms - (uint32_t)DRIVE_BEFORE_MS;
 
-    if (facts->is_driven && (plan->engage_ms != 0u)) {
+    if (facts->is_driven && (plan->engage_ms != 0)) {
         text_add(text, "  - {at_ms: %" PRIu32 ", ai: drive, gear: %c, throttle_pct: %u, steer_deg: %" PRId32 "}\n",
                  drive_ms, gear_letter(facts->gear), throttle_pct, facts->angle_ddeg / DDEG_PER_DEG);
     } else if (facts->is_driven) {
@@ -93,7 +92,7 @@ static void add_driver(text_t *text, const skeleton_plan_t *plan) {
     } else {
         /* it stood */
     }
-    if (plan->engage_ms != 0u) {
+    if (plan->engage_ms != 0) {
         text_add(text, "  - {name: engages, at_ms: %" PRIu32 ", operator: engage}\n", plan->engage_ms);
     }
 }

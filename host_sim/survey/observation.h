@@ -25,7 +25,7 @@ typedef struct {
     traffic_t *sets[OBSERVATION_SETS];
     evidence_t *evidence; /**< what the identifiers may carry */
     bus_load_t loads[HAL_CAN_SIDES];
-    char interfaces[OBSERVATION_INTERFACES_MAX][CANDUMP_INTERFACE_MAX + 1u];
+    char interfaces[OBSERVATION_INTERFACES_MAX][CANDUMP_INTERFACE_MAX + 1];
     uint32_t interface_count;
     bool more_interfaces; /**< than have room */
     uint64_t first_us;    /**< stamp of the first frame */

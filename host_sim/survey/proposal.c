@@ -37,12 +37,12 @@ typedef struct {
 } habit_t;
 
 static habit_t habit_of(const gaps_t *gaps) {
-    const uint64_t rare = gaps->count / (uint64_t)PERMILLE;
+    const uint64_t rare = gaps->count / PERMILLE;
     habit_t habit = {.cycle_us = gaps_quantile_us(gaps, MEDIAN_PERMILLE)};
-    habit.usual_us = gaps_without_longest_us(gaps, (rare > (uint64_t)OUTAGES_MAX) ? rare : (uint64_t)OUTAGES_MAX);
+    habit.usual_us = gaps_without_longest_us(gaps, (rare > OUTAGES_MAX) ? rare : (uint64_t)OUTAGES_MAX);
     habit.need_us = habit.cycle_us * CYCLES;
-    if ((habit.usual_us <= habit.cycle_us * CYCLES) && ((habit.usual_us * 3u) / 2u > habit.need_us)) {
-        habit.need_us = (habit.usual_us * 3u) / 2u;
+    if ((habit.usual_us <= habit.cycle_us * CYCLES) && ((habit.usual_us * 3) / 2 > habit.need_us)) {
+        habit.need_us = (habit.usual_us * 3) / 2;
     }
     return habit;
 }
@@ -51,9 +51,9 @@ static habit_t habit_of(const gaps_t *gaps) {
 static void note_late(proposal_t *proposal, const traffic_id_t *entry, const char *name) {
     const traffic_watch_t *watch = entry->watch;
     const uint64_t deadline_us = (uint64_t)agv_config_get(&proposal->config, watch->setting) * US_PER_MS;
-    if ((watch->gaps.count > 0u) && (watch->gaps.longest_us > deadline_us)) {
+    if ((watch->gaps.count > 0) && (watch->gaps.longest_us > deadline_us)) {
         const uint64_t longer = gaps_longer_than(&watch->gaps, deadline_us);
-        const uint64_t late = (longer > 0u) ? longer : 1u;
+        const uint64_t late = (longer > 0) ? longer : 1;
         const bool is_slow = gaps_quantile_us(&watch->gaps, MEDIAN_PERMILLE) > deadline_us;
         add_note(proposal, "%03Xh %s: %" PRIu64 " gap%s of up to %.1f ms, the longest at %.3f s; %s %s%s", entry->id,
                  name, late, words_plural(late), ms_of_us(watch->gaps.longest_us), s_of_us(watch->gaps.longest_at_us),
@@ -67,7 +67,7 @@ static void propose_deadline(proposal_t *proposal, const traffic_id_t *entry) {
     const agv_setting_info_t *info = agv_setting_info(watch->setting);
     const char *name = signals_message_name(entry->message);
     (void)agv_config_set(&proposal->config, watch->setting, info->preset);
-    if ((watch->when == TRAFFIC_ENGAGED) && (watch->gaps.count == 0u)) {
+    if ((watch->when == TRAFFIC_ENGAGED) && (watch->gaps.count == 0)) {
         return;
     }
     if (watch->gaps.count < PROPOSAL_GAPS_MIN) {
@@ -78,7 +78,7 @@ static void propose_deadline(proposal_t *proposal, const traffic_id_t *entry) {
         proposal->judged++;
         const habit_t habit = habit_of(&watch->gaps);
         const uint64_t step_us = (uint64_t)ROUND_MS * US_PER_MS;
-        const uint64_t need_ms = ((habit.need_us + step_us - 1u) / step_us) * ROUND_MS;
+        const uint64_t need_ms = ((habit.need_us + step_us - 1) / step_us) * ROUND_MS;
         const uint64_t value = (need_ms > info->highest) ? info->highest : need_ms;
         if (value > info->preset) {
             (void)agv_config_set(&proposal->config, watch->setting, (uint16_t)value);
@@ -112,7 +112,7 @@ static void propose_counter(proposal_t *proposal, const traffic_id_t *entry, uin
                  "%03Xh %s: %" PRIu64 " of %" PRIu64
                  " steps of its counter %s not by 1 to 3, the first at %.3f s: %s stays any",
                  entry->id, name, use->other_steps, use->steps + use->other_steps,
-                 (use->other_steps == 1u) ? "was" : "were", s_of_us(use->other_at_us),
+                 (use->other_steps == 1) ? "was" : "were", s_of_us(use->other_at_us),
                  agv_setting_info((uint16_t)setting)->name);
         break;
     case COUNTER_STUCK:
@@ -126,20 +126,20 @@ static void propose_counter(proposal_t *proposal, const traffic_id_t *entry, uin
 
 /** Alarms and invalid values: they trip or warn by their class, which is not changed. */
 static void note_values(proposal_t *proposal, const traffic_id_t *entry) {
-    for (size_t i = 0u; i < signals_count(entry->message); i++) {
+    for (size_t i = 0; i < signals_count(entry->message); i++) {
         const signal_info_t *info = signals_info(entry->message, i);
         const traffic_range_t *range = &entry->ranges[i];
-        if ((info->kind == SIGNAL_ALARM) && (range->set > 0u)) {
+        if ((info->kind == SIGNAL_ALARM) && (range->set > 0)) {
             add_note(
                 proposal, "%s was set in %" PRIu64 " frame%s, first at %.3f s: its class stays %s", info->name,
                 range->set, words_plural(range->set), s_of_us(range->set_at_us),
                 agv_class_name(agv_config_is_trip(&proposal->config, info->fault) ? AGV_CLASS_TRIP : AGV_CLASS_WARN));
-        } else if (range->invalid > 0u) {
+        } else if (range->invalid > 0) {
             add_note(proposal, "%03Xh %s: %" PRIu64 " frame%s with an invalid %s; no setting allows that", entry->id,
                      signals_message_name(entry->message), range->invalid, words_plural(range->invalid), info->name);
         }
     }
-    if (entry->malformed > 0u) {
+    if (entry->malformed > 0) {
         add_note(proposal, "%03Xh %s: %" PRIu64 " frame%s of another length or kind; they count as missing", entry->id,
                  signals_message_name(entry->message), entry->malformed, words_plural(entry->malformed));
     }
@@ -171,13 +171,13 @@ static void propose_identifier(proposal_t *proposal, uint32_t message, const ide
         return;
     }
     char absence[PROPOSAL_REASON_SIZE];
-    char candidates[IDENTIFY_CANDIDATES_MAX * 8u] = "";
-    for (size_t i = 0u; i < found->count; i++) {
-        (void)snprintf(&candidates[strlen(candidates)], 8u, "%s%03Xh", (i > 0u) ? ", " : "", found->candidates[i].id);
+    char candidates[IDENTIFY_CANDIDATES_MAX * 8] = "";
+    for (size_t i = 0; i < found->count; i++) {
+        (void)snprintf(&candidates[strlen(candidates)], 8, "%s%03Xh", (i > 0) ? ", " : "", found->candidates[i].id);
     }
-    if (found->count > 0u) {
+    if (found->count > 0) {
         add_note(proposal, "%s %.80s; candidates: %s%s. Look it up in the vehicle's document, and set %s", name,
-                 absence_of(found, absence), candidates, (found->left_out > 0u) ? " and more" : "",
+                 absence_of(found, absence), candidates, (found->left_out > 0) ? " and more" : "",
                  agv_setting_info((uint16_t)setting)->name);
     } else {
         add_note(proposal,
@@ -189,15 +189,15 @@ static void propose_identifier(proposal_t *proposal, uint32_t message, const ide
 /** The status frame needs an identifier that nobody else uses. */
 static void propose_status_id(proposal_t *proposal, const traffic_t *traffic) {
     const uint16_t id = proposal->config.status_frame_id;
-    uint64_t first_us = 0u;
-    uint64_t last_us = 0u;
-    if ((id == 0u) || !traffic_times(traffic, id, &first_us, &last_us)) {
+    uint64_t first_us = 0;
+    uint64_t last_us = 0;
+    if ((id == 0) || !traffic_times(traffic, id, &first_us, &last_us)) {
         return;
     }
     const uint8_t message = (uint8_t)SIGNALS_STATUS_FRAME;
-    for (size_t i = 0u; traffic_at(traffic, i) != NULL; i++) {
+    for (size_t i = 0; traffic_at(traffic, i) != NULL; i++) {
         const traffic_id_t *entry = traffic_at(traffic, i);
-        if ((entry->message == message) && (entry->ranges[0].invalid == 0u) && (entry->count > 0u)) {
+        if ((entry->message == message) && (entry->ranges[0].invalid == 0) && (entry->count > 0)) {
             add_note(proposal,
                      "%03Xh carries status frames of a supervisor: was a supervisor on the bus during the recording?",
                      id);
@@ -221,11 +221,11 @@ static void propose_message(proposal_t *proposal, const traffic_t *traffic, uint
                     {AGV_MSG_STEERING_STATUS, AGV_SETTING_eps_counter},
                     {AGV_MSG_TURN_SIGNAL_COMMAND, AGV_SETTING_ai_counter}};
     const traffic_id_t *entry = traffic_message(traffic, message);
-    if ((entry == NULL) || (entry->count == 0u)) {
+    if ((entry == NULL) || (entry->count == 0)) {
         return;
     }
     propose_deadline(proposal, entry);
-    for (size_t i = 0u; i < sizeof counters / sizeof counters[0]; i++) {
+    for (size_t i = 0; i < sizeof counters / sizeof counters[0]; i++) {
         if (counters[i].message == message) {
             propose_counter(proposal, entry, counters[i].setting);
         }
@@ -235,7 +235,7 @@ static void propose_message(proposal_t *proposal, const traffic_t *traffic, uint
 
 /** The reason of a setting that the user chose: it stays. */
 static void keep_given(proposal_t *proposal) {
-    for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
+    for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
         if ((proposal->reasons[i][0] == '\0') &&
             (agv_config_get(&proposal->config, i) != agv_setting_info(i)->preset) &&
             (i != (uint16_t)AGV_SETTING_shadow)) {
@@ -252,7 +252,7 @@ void proposal_make(proposal_t *proposal, const traffic_t *traffic, const agv_con
     if (id_set_reason != NULL) {
         reason(proposal, AGV_SETTING_id_set, "%s", id_set_reason);
     }
-    for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
+    for (uint32_t message = 0; message < AGV_MSG_COUNT; message++) {
         const identify_message_t *missing = &found->of[message];
         if (missing->is_missing) {
             propose_identifier(proposal, message, missing);
@@ -261,7 +261,7 @@ void proposal_make(proposal_t *proposal, const traffic_t *traffic, const agv_con
             propose_message(proposal, traffic, message);
         }
     }
-    if (traffic_totals(traffic).engagements == 0u) {
+    if (traffic_totals(traffic).engagements == 0) {
         add_note(proposal, "autopilot was never engaged: the deadlines of the commands are not judged");
     }
     propose_status_id(proposal, traffic);

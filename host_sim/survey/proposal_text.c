@@ -13,8 +13,8 @@ static void print_comment(FILE *file, const char *first, const char *text) {
     size_t used = (size_t)fprintf(file, "#%s", first);
     for (const char *at = text; *at != '\0';) {
         const size_t length = strcspn(at, " ");
-        if ((used + 1u + length > (size_t)COLUMNS) && (used > 1u)) {
-            used = (size_t)fprintf(file, "\n#%*s", (int)strlen(first), "") - 1u;
+        if ((used + 1 + length > COLUMNS) && (used > 1)) {
+            used = (size_t)fprintf(file, "\n#%*s", (int)strlen(first), "") - 1;
         }
         used += (size_t)fprintf(file, " %.*s", (int)length, at);
         at += length;
@@ -36,8 +36,8 @@ static void print_setting(FILE *file, const proposal_t *proposal, uint16_t setti
 }
 
 static size_t print_settings(FILE *file, const proposal_t *proposal) {
-    size_t count = 0u;
-    for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
+    size_t count = 0;
+    for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
         if (proposal->reasons[i][0] != '\0') {
             print_setting(file, proposal, i);
             count++;
@@ -50,20 +50,19 @@ static void print_all(FILE *file, const proposal_t *proposal, const char *source
     text_t name; /* in YAML a comment, too, has to be UTF-8, and some characters end it */
     print_comment(file, " Proposed by host_sim survey from", text_one_line(&name, source));
     print_comment(file, "", "Settings that are not here keep their defaults; host_sim config prints them all.");
-    if (print_settings(file, proposal) == 0u) {
+    if (print_settings(file, proposal) == 0) {
         (void)fputc('\n', file);
         print_comment(file, "",
-                      (proposal->judged == 0u)
-                          ? "No message of the protocol came often enough to evaluate the defaults."
-                      : (proposal->note_count > 0u)
+                      (proposal->judged == 0) ? "No message of the protocol came often enough to evaluate the defaults."
+                      : (proposal->note_count > 0)
                           ? "No setting needs another value, but the findings below must be explained first."
                           : "The defaults fit.");
     }
-    if (proposal->note_count > 0u) {
+    if (proposal->note_count > 0) {
         (void)fputc('\n', file);
         print_comment(file, "", "Findings that change no setting. Find the cause of each:");
     }
-    for (size_t i = 0u; i < proposal->note_count; i++) {
+    for (size_t i = 0; i < proposal->note_count; i++) {
         print_comment(file, " -", proposal->notes[i]);
     }
     (void)fputc('\n', file);
@@ -74,7 +73,7 @@ static void print_all(FILE *file, const proposal_t *proposal, const char *source
 
 char *proposal_yaml(const proposal_t *proposal, const char *source) {
     char *text = NULL;
-    size_t size = 0u;
+    size_t size = 0;
     FILE *file = open_memstream(&text, &size);
     if (file == NULL) {
         return NULL;
@@ -108,12 +107,12 @@ static json_t *setting_json(const proposal_t *proposal, uint16_t setting) {
 json_t *proposal_json(const proposal_t *proposal) {
     json_t *settings = json_array();
     json_t *notes = json_array();
-    for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
+    for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
         if (proposal->reasons[i][0] != '\0') {
             (void)json_array_append_new(settings, setting_json(proposal, i));
         }
     }
-    for (size_t i = 0u; i < proposal->note_count; i++) {
+    for (size_t i = 0; i < proposal->note_count; i++) {
         (void)json_array_append_new(notes, json_string(proposal->notes[i]));
     }
     json_t *object = json_object();

@@ -22,7 +22,7 @@ typedef struct {
 
 static bool open_sockets(live_t *live) {
     const linux_can_options_t options = {.error_frames = true, .receive_size = RECEIVE_BUFFER_BYTES};
-    for (size_t side = 0u; side < (size_t)HAL_CAN_SIDES; side++) {
+    for (size_t side = 0; side < HAL_CAN_SIDES; side++) {
         const char *interface = live->request->bus.interfaces[side];
         char error[LINUX_CAN_ERROR_SIZE];
         if (interface == NULL) {
@@ -43,11 +43,11 @@ static bool open_sockets(live_t *live) {
 static bool receive(live_t *live, hal_can_side_t side) {
     linux_can_record_t record;
     const char *interface = live->request->bus.interfaces[side];
-    for (unsigned i = 0u; i < FRAMES_AT_ONCE; i++) {
+    for (unsigned i = 0; i < FRAMES_AT_ONCE; i++) {
         switch (linux_can_read(&live->sockets[side], &record)) {
         case LINUX_CAN_RECORD:
             observation_frame(live->observation, side, &record.frame,
-                              (record.stamp_us != 0u) ? record.stamp_us : time_of_day_us());
+                              (record.stamp_us != 0) ? record.stamp_us : time_of_day_us());
             live->source->has_ai_side = live->source->has_ai_side || (side == HAL_CAN_AI);
             live->lost[side] = record.lost;
             break;
@@ -68,12 +68,12 @@ static bool receive(live_t *live, hal_can_side_t side) {
 static void listen(live_t *live) {
     const uint64_t begin_ms = monotonic_ms();
     const uint64_t for_ms = live->request->bus.for_ms;
-    uint32_t events = 0u;
+    uint32_t events = 0;
     bool good = true;
-    while (good && ((events & LINUX_LOOP_SIGNAL) == 0u) &&
+    while (good && ((events & LINUX_LOOP_SIGNAL) == 0) &&
            ((for_ms == INTERFACE_UNTIL_SIGNAL) || (monotonic_ms() - begin_ms < for_ms))) {
         events = linux_loop_wait(&live->loop);
-        for (size_t side = 0u; good && (side < (size_t)HAL_CAN_SIDES); side++) {
+        for (size_t side = 0; good && (side < HAL_CAN_SIDES); side++) {
             good = (live->sockets[side].fd < 0) || receive(live, (hal_can_side_t)side);
         }
     }
@@ -92,7 +92,7 @@ static bool run(live_t *live) {
         return false;
     }
     listen(live);
-    if (live->observation->frames == 0u) {
+    if (live->observation->frames == 0) {
         return report_silence(live);
     }
     (void)snprintf(live->source->name, sizeof live->source->name, "%s", live->request->bus.interfaces[HAL_CAN_VEHICLE]);
@@ -103,14 +103,14 @@ static bool run(live_t *live) {
 
 bool source_live(const survey_request_t *request, observation_t *observation, source_t *source) {
     live_t live = {.request = request, .observation = observation, .source = source};
-    for (size_t side = 0u; side < (size_t)HAL_CAN_SIDES; side++) {
+    for (size_t side = 0; side < HAL_CAN_SIDES; side++) {
         live.sockets[side].fd = -1;
     }
     if (!linux_loop_open(&live.loop)) {
         return report("the event loop cannot be opened: %s", strerror(errno));
     }
     const bool good = run(&live);
-    for (size_t side = 0u; side < (size_t)HAL_CAN_SIDES; side++) {
+    for (size_t side = 0; side < HAL_CAN_SIDES; side++) {
         linux_can_close(&live.sockets[side]);
     }
     linux_loop_close(&live.loop);

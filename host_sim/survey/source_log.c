@@ -17,14 +17,14 @@ static bool read_frames(const survey_request_t *request, candump_log_t *log, obs
     (void)snprintf(source->name, sizeof source->name, "%s", log->name);
     (void)snprintf(source->format, sizeof source->format, "%s", candump_format_name(log->format));
     source->skipped_lines = log->skipped;
-    if ((result == CANDUMP_END) && (observation->frames == 0u)) {
+    if ((result == CANDUMP_END) && (observation->frames == 0)) {
         return report("%s: contains no frame", log->name);
     }
     return result == CANDUMP_END;
 }
 
 bool source_log(const survey_request_t *request, observation_t *observation, source_t *source) {
-    candump_log_t *log = calloc(1u, sizeof *log);
+    candump_log_t *log = calloc(1, sizeof *log);
     if (log == NULL) {
         return report("out of memory");
     }

@@ -41,7 +41,7 @@ static bool is_readable_again(const survey_request_t *request) {
 
 /** Take the identifiers that were assigned into a configuration. @return false: two messages would share one */
 static bool renumber(const survey_result_t *result, agv_config_t *config) {
-    for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
+    for (uint32_t message = 0; message < AGV_MSG_COUNT; message++) {
         const identify_message_t *found = &result->found.of[message];
         if (found->is_assigned) {
             (void)agv_config_set(config, (uint32_t)AGV_SETTING_ID + message, (uint16_t)found->candidates[0].id);
@@ -53,7 +53,7 @@ static bool renumber(const survey_result_t *result, agv_config_t *config) {
 /** Survey once more with the identifiers that were found, so that the messages that they carry are known. */
 static bool survey_renumbered(survey_result_t *result) {
     agv_config_t config = result->config;
-    if ((identify_assigned(&result->found) == 0u) || !renumber(result, &config)) {
+    if ((identify_assigned(&result->found) == 0) || !renumber(result, &config)) {
         return true;
     }
     if (!is_readable_again(result->request)) {
@@ -70,7 +70,7 @@ static bool survey_renumbered(survey_result_t *result) {
 
 static void propose(survey_result_t *result) {
     const bool is_other = result->config.id_set != result->request->config.id_set;
-    const bool is_table = result->config.id_set == (uint16_t)AGV_ID_SET_TABLE;
+    const bool is_table = result->config.id_set == AGV_ID_SET_TABLE;
     char reason[REASON_SIZE];
     text_t back;
     (void)snprintf(reason, sizeof reason, "%s were received, %s were not, or less often",
@@ -136,7 +136,7 @@ static bool run_passes(survey_result_t *result) {
 }
 
 status_t survey_run(const survey_request_t *request) {
-    survey_result_t *result = calloc(1u, sizeof *result);
+    survey_result_t *result = calloc(1, sizeof *result);
     if (result == NULL) {
         (void)report("out of memory");
         return STATUS_UNUSABLE;

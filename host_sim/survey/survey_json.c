@@ -10,9 +10,9 @@ static json_t *load_json(const survey_result_t *result) {
     const uint64_t us = observation_us(&result->observation);
     const uint32_t bit_rate = (uint32_t)result->request->bit_rate;
     json_t *array = json_array();
-    for (size_t side = 0u; side < (size_t)HAL_CAN_SIDES; side++) {
+    for (size_t side = 0; side < HAL_CAN_SIDES; side++) {
         const bus_load_t *load = &result->observation.loads[side];
-        if (load->bits > 0u) {
+        if (load->bits > 0) {
             json_t *object = json_object();
             json_put(object, "side", json_string(sides[side]));
             json_put(object, "bit_rate", json_uint(bit_rate));
@@ -30,11 +30,11 @@ static json_t *id_sets_json(const survey_result_t *result) {
     static const char *const names[] = {[AGV_ID_SET_HEADING] = "heading", [AGV_ID_SET_TABLE] = "table"};
     const uint32_t messages[2] = {AGV_MSG_TURN_SIGNAL_COMMAND, AGV_MSG_VEHICLE_STATUS};
     json_t *object = json_object();
-    for (uint32_t id_set = 0u; id_set < sizeof names / sizeof names[0]; id_set++) {
+    for (uint32_t id_set = 0; id_set < sizeof names / sizeof names[0]; id_set++) {
         uint64_t counts[2];
         observation_set_counts(&result->observation, id_set, counts);
         json_t *set_object = json_object();
-        for (size_t i = 0u; i < 2u; i++) {
+        for (size_t i = 0; i < 2; i++) {
             char id[8];
             (void)snprintf(id, sizeof id, "%03X", agv_message_id(messages[i], id_set));
             json_put(set_object, id, json_uint(counts[i]));
@@ -47,7 +47,7 @@ static json_t *id_sets_json(const survey_result_t *result) {
 
 static json_t *interfaces_json(const observation_t *observation) {
     json_t *array = json_array();
-    for (uint32_t i = 0u; i < observation->interface_count; i++) {
+    for (uint32_t i = 0; i < observation->interface_count; i++) {
         json_add(array, json_string(observation->interfaces[i]));
     }
     return array;
@@ -56,12 +56,12 @@ static json_t *interfaces_json(const observation_t *observation) {
 static json_t *unknown_json(const survey_result_t *result) {
     const double seconds = s_of_us(observation_us(&result->observation));
     json_t *array = json_array();
-    for (size_t i = 0u; traffic_at(result->traffic, i) != NULL; i++) {
+    for (size_t i = 0; traffic_at(result->traffic, i) != NULL; i++) {
         const traffic_id_t *entry = traffic_at(result->traffic, i);
         if (entry->message == TRAFFIC_UNKNOWN) {
             json_t *object = traffic_id_json(entry);
             json_put(object, "per_s", (seconds > 0.0) ? json_real((double)entry->count / seconds) : json_null());
-            json_put(object, "length_min", json_integer((entry->count > 0u) ? entry->length_min : 0));
+            json_put(object, "length_min", json_integer((entry->count > 0) ? entry->length_min : 0));
             json_put(object, "length_max", json_integer(entry->length_max));
             json_add(array, object);
         }
@@ -71,9 +71,9 @@ static json_t *unknown_json(const survey_result_t *result) {
 
 static json_t *not_heard_json(const survey_result_t *result) {
     json_t *array = json_array();
-    for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
+    for (uint32_t message = 0; message < AGV_MSG_COUNT; message++) {
         const traffic_id_t *entry = traffic_message(result->traffic, message);
-        if ((entry == NULL) || (entry->count == 0u)) {
+        if ((entry == NULL) || (entry->count == 0)) {
             json_add(array, json_string(signals_message_name(message)));
         }
     }
@@ -82,7 +82,7 @@ static json_t *not_heard_json(const survey_result_t *result) {
 
 static json_t *words_json(const candidate_t *candidate, bool is_for) {
     json_t *array = json_array();
-    for (size_t i = 0u; i < candidate->count; i++) {
+    for (size_t i = 0; i < candidate->count; i++) {
         const verdict_t verdict = candidate->criteria[i].verdict;
         if (((verdict == VERDICT_FOR) || (verdict == VERDICT_DECIDES)) == is_for) {
             json_add(array, json_string(candidate->criteria[i].text));
@@ -94,10 +94,10 @@ static json_t *words_json(const candidate_t *candidate, bool is_for) {
 /** The messages that were not received: the identifiers that may carry them, the best one first. */
 static json_t *candidates_json(const survey_result_t *result) {
     json_t *array = json_array();
-    for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
+    for (uint32_t message = 0; message < AGV_MSG_COUNT; message++) {
         const identify_message_t *found = &result->found.of[message];
         json_t *candidates = json_array();
-        for (size_t i = 0u; i < found->count; i++) {
+        for (size_t i = 0; i < found->count; i++) {
             const candidate_t *candidate = &found->candidates[i];
             char id[8];
             (void)snprintf(id, sizeof id, "%03X", candidate->id);

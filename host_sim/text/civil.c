@@ -9,7 +9,7 @@ enum { YEAR_MIN = 1970, YEAR_MAX = 9999, YEAR_0 = 1900, MARCH = 3, MONTHS = 12, 
 enum { DAYS_PER_YEAR = 365, DAYS_PER_5_MONTHS = 153, DAYS_TO_1970 = 719468, LEAP = 4, CENTURY = 100, ERA = 400 };
 
 static bool is_leap(uint32_t year) {
-    return ((year % LEAP) == 0u) && (((year % CENTURY) != 0u) || ((year % ERA) == 0u));
+    return ((year % LEAP) == 0) && (((year % CENTURY) != 0) || ((year % ERA) == 0));
 }
 
 static uint32_t days_of(uint32_t year, uint32_t month) {
@@ -19,16 +19,16 @@ static uint32_t days_of(uint32_t year, uint32_t month) {
 
 /** Days since 1970-01-01, counted in years that begin in March. */
 static uint64_t days_since_1970(uint32_t year, uint32_t month, uint32_t day) {
-    const uint64_t y = (uint64_t)year - ((month < (uint32_t)MARCH) ? 1u : 0u);
-    const uint64_t m = ((uint64_t)month + (uint64_t)MONTHS - (uint64_t)MARCH) % (uint64_t)MONTHS;
-    const uint64_t day_of_year = (((uint64_t)DAYS_PER_5_MONTHS * m) + 2u) / 5u + day - 1u;
+    const uint64_t y = (uint64_t)year - ((month < MARCH) ? 1 : 0);
+    const uint64_t m = ((uint64_t)month + (uint64_t)MONTHS - (uint64_t)MARCH) % MONTHS;
+    const uint64_t day_of_year = (((uint64_t)DAYS_PER_5_MONTHS * m) + 2) / 5 + day - 1;
     return (y * DAYS_PER_YEAR) + (y / LEAP) - (y / CENTURY) + (y / ERA) + day_of_year - DAYS_TO_1970;
 }
 
 bool civil_seconds(const civil_t *civil, uint64_t *seconds) {
-    if ((civil->year < (uint32_t)YEAR_MIN) || (civil->year > (uint32_t)YEAR_MAX) || (civil->month < 1u) ||
-        (civil->month > (uint32_t)MONTHS) || (civil->day < 1u) || (civil->day > days_of(civil->year, civil->month)) ||
-        (civil->hour >= (uint32_t)HOURS) || (civil->minute >= (uint32_t)SIXTY) || (civil->second > (uint32_t)SIXTY)) {
+    if ((civil->year < YEAR_MIN) || (civil->year > YEAR_MAX) || (civil->month < 1) || (civil->month > MONTHS) ||
+        (civil->day < 1) || (civil->day > days_of(civil->year, civil->month)) || (civil->hour >= HOURS) ||
+        (civil->minute >= SIXTY) || (civil->second > SIXTY)) {
         return false;
     }
     const uint64_t days = days_since_1970(civil->year, civil->month, civil->day);

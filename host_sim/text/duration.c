@@ -13,9 +13,12 @@ static const struct {
     const char *words;
     uint64_t us;
 } units[] = {
-    [DURATION_US] = {"us", "microseconds", 1u},          [DURATION_MS] = {"ms", "milliseconds", 1000u},
-    [DURATION_S] = {"s", "seconds", 1000000u},           [DURATION_MIN] = {"min", "minutes", 60000000u},
-    [DURATION_H] = {"h", "hours", UINT64_C(3600000000)}, [DURATION_D] = {"d", "days", UINT64_C(86400000000)},
+    [DURATION_US] = {"us", "microseconds", 1},
+    [DURATION_MS] = {"ms", "milliseconds", 1000},
+    [DURATION_S] = {"s", "seconds", 1000000},
+    [DURATION_MIN] = {"min", "minutes", 60000000},
+    [DURATION_H] = {"h", "hours", UINT64_C(3600000000)},
+    [DURATION_D] = {"d", "days", UINT64_C(86400000000)},
 };
 
 enum { UNITS = sizeof units / sizeof units[0] };
@@ -41,12 +44,12 @@ static void append(decimal_t *decimal, char digit) {
 /** Read the digits behind the point, without the zeros at their end. @return what follows */
 static const char *read_fraction(const char *at, decimal_t *decimal) {
     const char *end = at;
-    size_t length = 0u;
+    size_t length = 0;
     for (; is_digit(*end); end++) {
-        length = (*end != '0') ? (size_t)(end - at) + 1u : length;
+        length = (*end != '0') ? (size_t)(end - at) + 1 : length;
     }
-    decimal->too_fine = length > (size_t)FRACTION_DIGITS_MAX;
-    for (size_t i = 0u; (i < length) && !decimal->too_fine; i++) {
+    decimal->too_fine = length > FRACTION_DIGITS_MAX;
+    for (size_t i = 0; (i < length) && !decimal->too_fine; i++) {
         append(decimal, at[i]);
         decimal->scale *= DECIMAL;
     }
@@ -68,8 +71,8 @@ static const char *read_decimal(const char *text, decimal_t *decimal, bool *has_
 }
 
 static size_t find_unit(const char *name) {
-    size_t unit = 0u;
-    while ((unit < (size_t)UNITS) && (strcmp(units[unit].name, name) != 0)) {
+    size_t unit = 0;
+    while ((unit < UNITS) && (strcmp(units[unit].name, name) != 0)) {
         unit++;
     }
     return unit;
@@ -81,7 +84,7 @@ static uint64_t common_divisor(uint64_t a, uint64_t b) {
         const uint64_t rest = a % b;
         a = b;
         b = rest;
-    } while (b != 0u);
+    } while (b != 0);
     return a;
 }
 
@@ -90,7 +93,7 @@ static duration_result_t convert(const decimal_t *decimal, size_t from, size_t t
     const uint64_t divisor = common_divisor(units[from].us, decimal->scale * units[to].us);
     const uint64_t factor = units[from].us / divisor;
     const uint64_t part = (decimal->scale * units[to].us) / divisor;
-    if (decimal->too_fine || (!decimal->overflows && ((decimal->value % part) != 0u))) {
+    if (decimal->too_fine || (!decimal->overflows && ((decimal->value % part) != 0))) {
         return DURATION_TOO_FINE;
     }
     if (decimal->overflows || (decimal->value / part > UINT64_MAX / factor)) {
@@ -102,17 +105,17 @@ static duration_result_t convert(const decimal_t *decimal, size_t from, size_t t
 
 duration_result_t duration_read(const char *text, duration_unit_t unit, uint64_t lowest, uint64_t highest,
                                 uint64_t *number) {
-    decimal_t decimal = {.scale = 1u};
+    decimal_t decimal = {.scale = 1};
     bool has_point = false;
     const char *name = read_decimal(text, &decimal, &has_point);
     if ((name == NULL) || (has_point && (*name == '\0'))) {
         return DURATION_NO_TIME;
     }
     const size_t from = (*name == '\0') ? (size_t)unit : find_unit(&name[(*name == ' ') ? 1 : 0]);
-    if (from == (size_t)UNITS) {
+    if (from == UNITS) {
         return DURATION_NO_TIME;
     }
-    uint64_t found = 0u;
+    uint64_t found = 0;
     const duration_result_t result = convert(&decimal, from, (size_t)unit, &found);
     if (result != DURATION_OK) {
         return result;
@@ -129,7 +132,7 @@ static const char *examples_of(duration_unit_t unit) {
     if (unit >= DURATION_D) {
         return "2d";
     }
-    return (unit >= DURATION_MIN) ? "2h" : &"250ms, 10s, 1.5min, 2h"[(unit == DURATION_S) ? strlen("250ms, ") : 0u];
+    return (unit >= DURATION_MIN) ? "2h" : &"250ms, 10s, 1.5min, 2h"[(unit == DURATION_S) ? strlen("250ms, ") : 0];
 }
 
 const char *duration_problem(duration_result_t result, const char *text, duration_unit_t unit, uint64_t lowest,
@@ -151,8 +154,8 @@ const char *duration_problem(duration_result_t result, const char *text, duratio
 
 const char *duration_text(uint64_t number, duration_unit_t unit, char text[DURATION_TEXT_SIZE]) {
     size_t shown = (size_t)unit;
-    for (size_t i = (size_t)unit + 1u; i < (size_t)UNITS; i++) {
-        shown = ((number > 0u) && ((number % (units[i].us / units[unit].us)) == 0u)) ? i : shown;
+    for (size_t i = (size_t)unit + 1; i < UNITS; i++) {
+        shown = ((number > 0) && ((number % (units[i].us / units[unit].us)) == 0)) ? i : shown;
     }
     (void)snprintf(text, DURATION_TEXT_SIZE, "%" PRIu64 "%s", number / (units[shown].us / units[unit].us),
                    units[shown].name);

@@ -9,16 +9,16 @@ const uint8_t HEX_DIGIT_PLUS_1[256] = {
 };
 
 size_t hex_bytes(const char *text, size_t length, uint8_t *bytes, size_t most) {
-    if (((length % 2u) != 0u) || (length / 2u > most)) {
-        return 0u;
+    if (((length % 2) != 0) || (length / 2 > most)) {
+        return 0;
     }
-    for (size_t i = 0u; i < length / 2u; i++) {
-        const uint32_t high = hex_digit(text[2u * i]);
-        const uint32_t low = hex_digit(text[(2u * i) + 1u]);
-        if ((high >= (uint32_t)HEX_NO_DIGIT) || (low >= (uint32_t)HEX_NO_DIGIT)) {
-            return 0u;
+    for (size_t i = 0; i < length / 2; i++) {
+        const uint32_t high = hex_digit(text[2 * i]);
+        const uint32_t low = hex_digit(text[(2 * i) + 1]);
+        if ((high >= HEX_NO_DIGIT) || (low >= HEX_NO_DIGIT)) {
+            return 0;
         }
-        bytes[i] = (uint8_t)((high << 4u) | low);
+        bytes[i] = (uint8_t)((high << 4) | low);
     }
-    return length / 2u;
+    return length / 2;
 }

@@ -18,7 +18,7 @@ extern const uint8_t HEX_DIGIT_PLUS_1[256];
 
 /** Value of a hexadecimal digit in either case; HEX_NO_DIGIT or more for other characters. */
 static inline uint32_t hex_digit(char character) {
-    return (HEX_DIGIT_PLUS_1[(unsigned char)character] + 255u) & 0xFFu;
+    return (HEX_DIGIT_PLUS_1[(unsigned char)character] + 255) & 0xFFu;
 }
 
 /** Read hexadecimal bytes. @return how many; 0: none, more than @p most, half a byte, or another character */

@@ -20,7 +20,7 @@ static size_t minimum(size_t a, size_t b) {
 
 /** Skip dashes in front. */
 static const char *skip_dashes(const char *text, size_t *length) {
-    size_t dashes = 0u;
+    size_t dashes = 0;
     while ((dashes < *length) && (text[dashes] == '-')) {
         dashes++;
     }
@@ -31,29 +31,29 @@ static const char *skip_dashes(const char *text, size_t *length) {
 /** Letters to add, leave out, replace or swap (optimal string alignment). Both lengths are at most LENGTH_MAX. */
 static size_t distance_of(const char *a, size_t a_length, const char *b, size_t b_length) {
     size_t rows[3][LENGTH_MAX + 1];
-    for (size_t j = 0u; j <= b_length; j++) {
+    for (size_t j = 0; j <= b_length; j++) {
         rows[0][j] = j;
     }
-    for (size_t i = 1u; i <= a_length; i++) {
-        size_t *row = rows[i % 3u];
-        const size_t *last = rows[(i + 2u) % 3u];
+    for (size_t i = 1; i <= a_length; i++) {
+        size_t *row = rows[i % 3];
+        const size_t *last = rows[(i + 2) % 3];
         row[0] = i;
-        for (size_t j = 1u; j <= b_length; j++) {
-            const bool is_same = fold_case(a[i - 1u]) == fold_case(b[j - 1u]);
-            row[j] = minimum(minimum(last[j], row[j - 1u]) + 1u, last[j - 1u] + (is_same ? 0u : 1u));
-            if ((i > 1u) && (j > 1u) && (fold_case(a[i - 1u]) == fold_case(b[j - 2u])) &&
-                (fold_case(a[i - 2u]) == fold_case(b[j - 1u]))) {
-                row[j] = minimum(row[j], rows[(i + 1u) % 3u][j - 2u] + 1u);
+        for (size_t j = 1; j <= b_length; j++) {
+            const bool is_same = fold_case(a[i - 1]) == fold_case(b[j - 1]);
+            row[j] = minimum(minimum(last[j], row[j - 1]) + 1, last[j - 1] + (is_same ? 0 : 1));
+            if ((i > 1) && (j > 1) && (fold_case(a[i - 1]) == fold_case(b[j - 2])) &&
+                (fold_case(a[i - 2]) == fold_case(b[j - 1]))) {
+                row[j] = minimum(row[j], rows[(i + 1) % 3][j - 2] + 1);
             }
         }
     }
-    return rows[a_length % 3u][b_length];
+    return rows[a_length % 3][b_length];
 }
 
 /** Whether a word begins with what was written. */
 static bool begins_with(const char *word, size_t length, const char *written, size_t written_length) {
-    return (written_length >= (size_t)PREFIX_MIN) && (written_length < length) &&
-           (distance_of(word, written_length, written, written_length) == 0u);
+    return (written_length >= PREFIX_MIN) && (written_length < length) &&
+           (distance_of(word, written_length, written, written_length) == 0);
 }
 
 suggestion_t suggest_begin(const char *written, size_t length) {
@@ -66,13 +66,13 @@ void suggest_offer(suggestion_t *suggestion, const char *word, size_t length) {
     size_t compared = length;
     const char *letters = skip_dashes(word, &compared);
     const size_t written_length = suggestion->written_length;
-    if ((compared > (size_t)LENGTH_MAX) || (written_length > (size_t)LENGTH_MAX)) {
+    if ((compared > LENGTH_MAX) || (written_length > LENGTH_MAX)) {
         return;
     }
     const size_t distance = begins_with(letters, compared, suggestion->written, written_length)
-                                ? 1u
+                                ? 1
                                 : distance_of(letters, compared, suggestion->written, written_length);
-    const size_t mistakes = (compared + (size_t)LETTERS_OF_A_MISTAKE - 1u) / (size_t)LETTERS_OF_A_MISTAKE;
+    const size_t mistakes = (compared + (size_t)LETTERS_OF_A_MISTAKE - 1) / LETTERS_OF_A_MISTAKE;
     if ((distance <= mistakes) && (distance < written_length) &&
         ((suggestion->word == NULL) || (distance < suggestion->distance))) {
         suggestion->word = word;
@@ -83,8 +83,8 @@ void suggest_offer(suggestion_t *suggestion, const char *word, size_t length) {
 
 void suggest_offer_words(suggestion_t *suggestion, const char *words) {
     const char *word = NULL;
-    size_t length = words_at(words, 0u, &word);
-    for (size_t i = 1u; length > 0u; i++) {
+    size_t length = words_at(words, 0, &word);
+    for (size_t i = 1; length > 0; i++) {
         suggest_offer(suggestion, word, length);
         length = words_at(words, i, &word);
     }

@@ -7,7 +7,7 @@
 #include <string.h>
 
 void text_clear(text_t *text) {
-    text->used = 0u;
+    text->used = 0;
     text->full = false;
     text->bytes[0] = '\0';
 }
@@ -26,8 +26,8 @@ void text_add(text_t *text, const char *format, ...) {
 }
 
 void text_add_count(text_t *text, const char *what, uint64_t count) {
-    if (count > 0u) {
-        text_add(text, "%s%s: %" PRIu64, (text->used > 0u) ? ", " : "", what, count);
+    if (count > 0) {
+        text_add(text, "%s%s: %" PRIu64, (text->used > 0) ? ", " : "", what, count);
     }
 }
 
@@ -36,23 +36,23 @@ size_t text_character(const char *text, uint32_t *character) {
         uint32_t mask; /**< of the first byte */
         uint32_t value;
         uint32_t lowest; /**< that is so long */
-    } lengths[] = {{0x80u, 0x00u, 0u}, {0xE0u, 0xC0u, 0x80u}, {0xF0u, 0xE0u, 0x800u}, {0xF8u, 0xF0u, 0x10000u}};
+    } lengths[] = {{0x80u, 0x00u, 0}, {0xE0u, 0xC0u, 0x80u}, {0xF0u, 0xE0u, 0x800u}, {0xF8u, 0xF0u, 0x10000u}};
     const unsigned char *at = (const unsigned char *)text;
-    size_t more = 0u;
+    size_t more = 0;
     while ((more < sizeof lengths / sizeof lengths[0]) && ((at[0] & lengths[more].mask) != lengths[more].value)) {
         more++;
     }
     if (more == sizeof lengths / sizeof lengths[0]) {
-        return 0u;
+        return 0;
     }
     *character = at[0] & ~lengths[more].mask;
-    for (size_t i = 1u; i <= more; i++) {
+    for (size_t i = 1; i <= more; i++) {
         if ((at[i] & 0xC0u) != 0x80u) {
-            return 0u;
+            return 0;
         }
-        *character = (*character << 6u) | (at[i] & 0x3Fu);
+        *character = (*character << 6) | (at[i] & 0x3Fu);
     }
-    return (*character >= lengths[more].lowest) ? more + 1u : 0u;
+    return (*character >= lengths[more].lowest) ? more + 1 : 0;
 }
 
 /** The length of a character that can be shown within a line; 0: it cannot. */
@@ -64,11 +64,11 @@ static size_t shown_length(const char *text) {
         {0x00u, 0x1Fu},     {0x7Fu, 0x9Fu},     {0x2028u, 0x202Eu},      {0xD800u, 0xDFFFu},
         {0xFEFFu, 0xFEFFu}, {0xFFFEu, 0xFFFFu}, {0x110000u, UINT32_MAX},
     };
-    uint32_t character = 0u;
+    uint32_t character = 0;
     const size_t length = text_character(text, &character);
-    for (size_t i = 0u; i < sizeof hidden / sizeof hidden[0]; i++) {
+    for (size_t i = 0; i < sizeof hidden / sizeof hidden[0]; i++) {
         if ((character >= hidden[i].first) && (character <= hidden[i].last)) {
-            return 0u;
+            return 0;
         }
     }
     return length;
@@ -76,7 +76,7 @@ static size_t shown_length(const char *text) {
 
 bool text_is_one_line(const char *text) {
     const char *at = text;
-    for (size_t length = shown_length(at); length > 0u; length = shown_length(at)) {
+    for (size_t length = shown_length(at); length > 0; length = shown_length(at)) {
         at += length;
     }
     return *at == '\0';
@@ -85,8 +85,8 @@ bool text_is_one_line(const char *text) {
 void text_mask(char *text) {
     for (char *at = text; *at != '\0';) {
         const size_t length = shown_length(at);
-        *at = (length > 0u) ? *at : '?';
-        at += (length > 0u) ? length : 1u;
+        *at = (length > 0) ? *at : '?';
+        at += (length > 0) ? length : 1;
     }
 }
 
@@ -99,10 +99,10 @@ const char *text_one_line(text_t *copy, const char *from) {
 
 size_t text_break(const char *text, size_t room) {
     size_t length = room;
-    while ((length > 0u) && (text[length] != ' ')) {
+    while ((length > 0) && (text[length] != ' ')) {
         length--;
     }
-    return (length > 0u) ? length : room;
+    return (length > 0) ? length : room;
 }
 
 void text_print_from(int column, const char *text) {
@@ -110,7 +110,7 @@ void text_print_from(int column, const char *text) {
     while (strlen(text) > room) {
         const size_t length = text_break(text, room);
         (void)printf("%.*s\n%*s", (int)length, text, column, "");
-        text = &text[length + ((text[length] == ' ') ? 1u : 0u)];
+        text = &text[length + ((text[length] == ' ') ? 1 : 0)];
     }
     (void)printf("%s\n", text);
 }

@@ -21,7 +21,7 @@ static inline double s_of_us(uint64_t us) {
 
 /** The difference of two times as they are shown, in ms: each without its microseconds. */
 static inline uint64_t shown_ms(uint64_t from_us, uint64_t to_us) {
-    return (to_us / (uint64_t)US_PER_MS) - (from_us / (uint64_t)US_PER_MS);
+    return (to_us / US_PER_MS) - (from_us / US_PER_MS);
 }
 
 /** Milliseconds of a clock that never goes back. */

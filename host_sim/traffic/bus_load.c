@@ -10,20 +10,20 @@ enum { BYTE_BITS = 8, BITS_BETWEEN_STUFF_BITS = 4, PERCENT = 100 };
 enum { STANDARD_STUFFABLE = 34, EXTENDED_STUFFABLE = 54, FD_MORE = 13, NOT_STUFFABLE = 13 };
 
 void bus_load_frame(bus_load_t *load, const hal_can_frame_t *frame, uint64_t t_us) {
-    if ((frame->flags & HAL_CAN_ERROR) != 0u) {
+    if ((frame->flags & HAL_CAN_ERROR) != 0) {
         return;
     }
-    const bool is_remote = (frame->flags & HAL_CAN_REMOTE) != 0u;
-    const uint32_t header = ((frame->flags & HAL_CAN_EXTENDED) != 0u) ? EXTENDED_STUFFABLE : STANDARD_STUFFABLE;
-    const uint32_t more = ((frame->flags & HAL_CAN_FD) != 0u) ? FD_MORE : 0u;
-    const uint32_t stuffable = header + more + (is_remote ? 0u : ((uint32_t)frame->length * BYTE_BITS));
+    const bool is_remote = (frame->flags & HAL_CAN_REMOTE) != 0;
+    const uint32_t header = ((frame->flags & HAL_CAN_EXTENDED) != 0) ? EXTENDED_STUFFABLE : STANDARD_STUFFABLE;
+    const uint32_t more = ((frame->flags & HAL_CAN_FD) != 0) ? FD_MORE : 0;
+    const uint32_t stuffable = header + more + (is_remote ? 0 : ((uint32_t)frame->length * BYTE_BITS));
     const uint64_t bits = (uint64_t)stuffable + NOT_STUFFABLE;
-    const uint64_t stuffed_bits = bits + ((stuffable - 1u) / BITS_BETWEEN_STUFF_BITS);
+    const uint64_t stuffed_bits = bits + ((stuffable - 1) / BITS_BETWEEN_STUFF_BITS);
     if (t_us / US_PER_S != load->second) {
         load->busiest_second = (load->second_bits > load->busiest_bits) ? load->second : load->busiest_second;
         load->busiest_bits = bus_load_busiest(load);
         load->second = t_us / US_PER_S;
-        load->second_bits = 0u;
+        load->second_bits = 0;
     }
     load->bits += bits;
     load->stuffed_bits += stuffed_bits;
@@ -35,5 +35,5 @@ uint64_t bus_load_busiest(const bus_load_t *load) {
 }
 
 double bus_load_percent(uint64_t bits, uint64_t us, uint32_t bit_rate) {
-    return (us == 0u) ? 0.0 : ((double)bits * (double)PERCENT * (double)US_PER_S) / ((double)us * (double)bit_rate);
+    return (us == 0) ? 0.0 : ((double)bits * (double)PERCENT * (double)US_PER_S) / ((double)us * (double)bit_rate);
 }

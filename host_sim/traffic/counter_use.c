@@ -6,14 +6,14 @@ enum { STEP_MAX = 3 };
 
 void counter_use_add(counter_use_t *use, uint8_t value, uint64_t t_us) {
     const uint8_t step = (uint8_t)(value - use->value);
-    const bool is_first = use->frames == 0u;
+    const bool is_first = use->frames == 0;
     use->value = value;
     use->frames++;
     if (is_first) {
         use->changed_us = t_us;
         return;
     }
-    if (step == 0u) {
+    if (step == 0) {
         use->repeats++;
         if (t_us - use->changed_us > use->longest_us) {
             use->longest_us = t_us - use->changed_us;
@@ -22,11 +22,11 @@ void counter_use_add(counter_use_t *use, uint8_t value, uint64_t t_us) {
         return;
     }
     use->changed_us = t_us;
-    if (step <= (uint8_t)STEP_MAX) {
+    if (step <= STEP_MAX) {
         use->steps++;
         return;
     }
-    use->other_at_us = (use->other_steps == 0u) ? t_us : use->other_at_us;
+    use->other_at_us = (use->other_steps == 0) ? t_us : use->other_at_us;
     use->other_steps++;
 }
 
@@ -34,10 +34,10 @@ counter_kind_t counter_use_kind(const counter_use_t *use) {
     if (use->frames < COUNTER_USE_FRAMES_MIN) {
         return COUNTER_UNSEEN;
     }
-    if (use->steps + use->other_steps == 0u) {
+    if (use->steps + use->other_steps == 0) {
         return COUNTER_STUCK;
     }
-    return (use->other_steps == 0u) ? COUNTER_INCREMENTS : COUNTER_ANY;
+    return (use->other_steps == 0) ? COUNTER_INCREMENTS : COUNTER_ANY;
 }
 
 const char *counter_use_word(counter_kind_t kind) {

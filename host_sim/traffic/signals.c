@@ -16,19 +16,19 @@ typedef struct {
     const char *word;
 } word_row_t;
 
-static const word_row_t on_words[] = {{0u, "off"}, {1u, "on"}, {0u, NULL}};
-static const word_row_t off_words[] = {{0u, "on"}, {1u, "off"}, {0u, NULL}};
-static const word_row_t yes_words[] = {{0u, "no"}, {1u, "yes"}, {0u, NULL}};
+static const word_row_t on_words[] = {{0, "off"}, {1, "on"}, {0, NULL}};
+static const word_row_t off_words[] = {{0, "on"}, {1, "off"}, {0, NULL}};
+static const word_row_t yes_words[] = {{0, "no"}, {1, "yes"}, {0, NULL}};
 static const word_row_t gear_words[] = {
-    {AGV_GEAR_P, "P"}, {AGV_GEAR_R, "R"}, {AGV_GEAR_N, "N"}, {AGV_GEAR_D, "D"}, {0u, NULL}};
-static const word_row_t mode_words[] = {{0u, "none"}, {1u, "manual"}, {2u, "autopilot"}, {3u, "both"}, {0u, NULL}};
+    {AGV_GEAR_P, "P"}, {AGV_GEAR_R, "R"}, {AGV_GEAR_N, "N"}, {AGV_GEAR_D, "D"}, {0, NULL}};
+static const word_row_t mode_words[] = {{0, "none"}, {1, "manual"}, {2, "autopilot"}, {3, "both"}, {0, NULL}};
 static const word_row_t eps_mode_words[] = {{AGV_EPS_MODE_ASSIST, "assist"}, {AGV_EPS_MODE_ANGLE, "angle"},
                                             {AGV_EPS_MODE_SPEED, "speed"},   {AGV_EPS_MODE_TORQUE, "torque"},
-                                            {AGV_EPS_MODE_OFF, "off"},       {0u, NULL}};
-static const word_row_t output_words[] = {{0u, "open"}, {1u, "closed"}, {0u, NULL}};
-static const word_row_t no_words[] = {{0u, NULL}};
-static const word_row_t state_words[] = {{0u, NULL}};  /* agv_state_name() knows them */
-static const word_row_t reason_words[] = {{0u, NULL}}; /* agv_fault_name() knows them */
+                                            {AGV_EPS_MODE_OFF, "off"},       {0, NULL}};
+static const word_row_t output_words[] = {{0, "open"}, {1, "closed"}, {0, NULL}};
+static const word_row_t no_words[] = {{0, NULL}};
+static const word_row_t state_words[] = {{0, NULL}};  /* agv_state_name() knows them */
+static const word_row_t reason_words[] = {{0, NULL}}; /* agv_fault_name() knows them */
 
 /** How the raw value lies in the payload. */
 typedef enum {
@@ -88,10 +88,10 @@ static void make_table(void) {
     if (table.made) {
         return;
     }
-    for (size_t i = 0u; i < (size_t)ROWS; i++) {
+    for (size_t i = 0; i < ROWS; i++) {
         const row_t *row = &rows[i];
         const bool is_alarm = row->layout == LAYOUT_ALARM;
-        table.first[row->message] = (table.count[row->message] == 0u) ? i : table.first[row->message];
+        table.first[row->message] = (table.count[row->message] == 0) ? i : table.first[row->message];
         table.count[row->message]++;
         table.infos[i] = (signal_info_t){.name = row->name,
                                          .unit = row->unit,
@@ -105,7 +105,7 @@ static void make_table(void) {
 /** The index of a row; ROWS: there is no such signal. */
 static size_t row_of(uint32_t message, size_t index) {
     make_table();
-    const bool exists = (message < (uint32_t)SIGNALS_MESSAGES) && (index < table.count[message]);
+    const bool exists = (message < SIGNALS_MESSAGES) && (index < table.count[message]);
     return exists ? table.first[message] + index : (size_t)ROWS;
 }
 
@@ -115,24 +115,24 @@ const char *signals_message_name(uint32_t message) {
 
 size_t signals_count(uint32_t message) {
     make_table();
-    return (message < (uint32_t)SIGNALS_MESSAGES) ? table.count[message] : 0u;
+    return (message < SIGNALS_MESSAGES) ? table.count[message] : 0;
 }
 
 const signal_info_t *signals_info(uint32_t message, size_t index) {
     const size_t row = row_of(message, index);
-    return (row < (size_t)ROWS) ? &table.infos[row] : NULL;
+    return (row < ROWS) ? &table.infos[row] : NULL;
 }
 
 static uint32_t raw_of(const row_t *row, const uint8_t data[AGV_DLC]) {
     const uint32_t first = (uint32_t)row->at / BITS_PER_BYTE;
-    const uint32_t bytes = ((uint32_t)row->bits + BITS_PER_BYTE - 1u) / BITS_PER_BYTE;
-    uint32_t raw = 0u;
-    for (uint32_t i = 0u; i < bytes; i++) {
-        const uint32_t from = (row->layout == LAYOUT_BIG) ? i : bytes - 1u - i;
+    const uint32_t bytes = ((uint32_t)row->bits + BITS_PER_BYTE - 1) / BITS_PER_BYTE;
+    uint32_t raw = 0;
+    for (uint32_t i = 0; i < bytes; i++) {
+        const uint32_t from = (row->layout == LAYOUT_BIG) ? i : bytes - 1 - i;
         raw = (raw << BITS_PER_BYTE) | data[first + from];
     }
     raw >>= (uint32_t)row->at % BITS_PER_BYTE;
-    return (row->bits == 32u) ? raw : (raw & ((1u << row->bits) - 1u));
+    return (row->bits == 32) ? raw : (raw & ((1u << row->bits) - 1));
 }
 
 static const char *word_of(const row_t *row, uint32_t raw) {
@@ -140,7 +140,7 @@ static const char *word_of(const row_t *row, uint32_t raw) {
         return agv_state_name((agv_state_t)raw);
     }
     if (row->words == reason_words) {
-        return (raw == (uint32_t)NO_REASON) ? "none" : agv_fault_name((agv_fault_t)raw);
+        return (raw == NO_REASON) ? "none" : agv_fault_name((agv_fault_t)raw);
     }
     for (const word_row_t *word = row->words; word->word != NULL; word++) {
         if (word->raw == raw) {
@@ -164,18 +164,18 @@ static signal_value_t value_of(const row_t *row, uint32_t raw) {
 
 bool signals_read(uint32_t message, size_t index, const uint8_t data[AGV_DLC], signal_value_t *value) {
     const size_t at = row_of(message, index);
-    if (at == (size_t)ROWS) {
+    if (at == ROWS) {
         return false;
     }
     const row_t *row = &rows[at];
-    const bool present = (row->page == (uint8_t)ANY_PAGE) || (row->page == (data[PAGE_AT] >> PAGE_SHIFT));
+    const bool present = (row->page == ANY_PAGE) || (row->page == (data[PAGE_AT] >> PAGE_SHIFT));
     *value = present ? value_of(row, raw_of(row, data)) : (signal_value_t){.valid = true};
     return true;
 }
 
 void signals_mask(uint32_t message, uint8_t mask[AGV_DLC]) {
     (void)memset(mask, 0, AGV_DLC);
-    for (size_t i = 0u; i < signals_count(message); i++) {
+    for (size_t i = 0; i < signals_count(message); i++) {
         const row_t *row = &rows[row_of(message, i)];
         for (uint32_t bit = row->at; bit < (uint32_t)row->at + row->bits; bit++) {
             mask[bit / BITS_PER_BYTE] |= (uint8_t)(1u << (bit % BITS_PER_BYTE));
@@ -185,7 +185,7 @@ void signals_mask(uint32_t message, uint8_t mask[AGV_DLC]) {
 
 static int64_t power_of_ten(uint8_t decimals) {
     int64_t power = 1;
-    for (uint8_t i = 0u; i < decimals; i++) {
+    for (uint8_t i = 0; i < decimals; i++) {
         power *= DECIMAL;
     }
     return power;
@@ -212,7 +212,7 @@ void signals_value_text(char text[SIGNALS_VALUE_SIZE], const signal_info_t *info
 void signals_raw_text(char text[SIGNALS_VALUE_SIZE], uint32_t message, size_t index, uint32_t raw) {
     const size_t row = row_of(message, index);
     text[0] = '\0';
-    if (row < (size_t)ROWS) {
+    if (row < ROWS) {
         const signal_value_t value = value_of(&rows[row], raw);
         signals_value_text(text, &table.infos[row], &value);
     }
@@ -226,14 +226,14 @@ static bool is_shown(const signal_info_t *info, const signal_value_t *value) {
     if ((info->kind == SIGNAL_FLAG) && (value->word != NULL)) {
         return (strcmp(value->word, "no") != 0) && (strcmp(value->word, "off") != 0);
     }
-    return (info->kind != SIGNAL_ALARM) || (value->raw != 0u);
+    return (info->kind != SIGNAL_ALARM) || (value->raw != 0);
 }
 
 char *signals_print(char *text, size_t size, uint32_t message, const uint8_t data[AGV_DLC]) {
-    size_t used = 0u;
+    size_t used = 0;
     signal_value_t value;
     text[0] = '\0';
-    for (size_t i = 0u; signals_read(message, i, data, &value); i++) {
+    for (size_t i = 0; signals_read(message, i, data, &value); i++) {
         const signal_info_t *info = signals_info(message, i);
         if ((info == NULL) || !is_shown(info, &value)) {
             continue;
@@ -245,9 +245,9 @@ char *signals_print(char *text, size_t size, uint32_t message, const uint8_t dat
             signals_value_text(number, info, &value);
         }
         const int length =
-            snprintf(part, sizeof part, "%s%.40s%s%s", (used > 0u) ? ", " : "", info->name, is_set ? "" : " ", number);
+            snprintf(part, sizeof part, "%s%.40s%s%s", (used > 0) ? ", " : "", info->name, is_set ? "" : " ", number);
         if (used + (size_t)length < size) {
-            (void)memcpy(&text[used], part, (size_t)length + 1u);
+            (void)memcpy(&text[used], part, (size_t)length + 1);
             used += (size_t)length;
         }
     }

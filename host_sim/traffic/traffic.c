@@ -19,7 +19,7 @@ enum { BITS_PER_WORD = 32, WORD_CHOICES = 256 };
 
 /** The index of the alive counter in data[] of a message or the status frame. */
 static uint8_t counter_at(uint32_t message) {
-    return (message < (uint32_t)AGV_MSG_COUNT) ? message_counter_at(message) : (uint8_t)STATUS_COUNTER_AT;
+    return (message < AGV_MSG_COUNT) ? message_counter_at(message) : (uint8_t)STATUS_COUNTER_AT;
 }
 
 struct traffic {
@@ -37,7 +37,7 @@ struct traffic {
 };
 
 traffic_t *traffic_new(const agv_config_t *config) {
-    traffic_t *traffic = calloc(1u, sizeof *traffic);
+    traffic_t *traffic = calloc(1, sizeof *traffic);
     if (traffic == NULL) {
         return NULL;
     }
@@ -45,10 +45,10 @@ traffic_t *traffic_new(const agv_config_t *config) {
     agv_config_ids(config, &ids);
     traffic->config = *config;
     (void)memset(traffic->messages, MESSAGE_UNKNOWN, sizeof traffic->messages);
-    if (config->status_frame_id != 0u) {
+    if (config->status_frame_id != 0) {
         traffic->messages[config->status_frame_id] = (uint8_t)SIGNALS_STATUS_FRAME;
     }
-    for (size_t i = 0u; i < (size_t)AGV_MSG_COUNT; i++) {
+    for (size_t i = 0; i < AGV_MSG_COUNT; i++) {
         traffic->messages[ids.of[i]] = (uint8_t)i;
     }
     return traffic;
@@ -63,7 +63,7 @@ static void free_id(traffic_id_t *entry) {
 
 void traffic_free(traffic_t *traffic) {
     if (traffic != NULL) {
-        for (size_t i = 0u; i < traffic->all_count; i++) {
+        for (size_t i = 0; i < traffic->all_count; i++) {
             free_id(traffic->all[i]);
         }
         free(traffic);
@@ -84,11 +84,11 @@ static bool allocate_parts(const traffic_t *traffic, traffic_id_t *entry) {
     entry->ranges = calloc(SIGNALS_MAX, sizeof *entry->ranges);
     bool good = entry->ranges != NULL;
     if (counter_at(entry->message) != MESSAGE_NO_COUNTER) {
-        entry->counter = calloc(1u, sizeof *entry->counter);
+        entry->counter = calloc(1, sizeof *entry->counter);
         good = good && (entry->counter != NULL);
     }
     if ((entry->message != SIGNALS_STATUS_FRAME) && (entry->side == side_of(traffic, entry->message))) {
-        entry->watch = calloc(1u, sizeof *entry->watch);
+        entry->watch = calloc(1, sizeof *entry->watch);
         good = good && (entry->watch != NULL);
         if (good) {
             watch_init(entry->watch, &traffic->config, entry->message);
@@ -99,16 +99,16 @@ static bool allocate_parts(const traffic_t *traffic, traffic_id_t *entry) {
 
 /** Make the entry of an identifier that is heard for the first time. @return NULL: out of memory */
 static traffic_id_t *add_id(traffic_t *traffic, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
-    traffic_id_t *entry = calloc(1u, sizeof *entry);
+    traffic_id_t *entry = calloc(1, sizeof *entry);
     if (entry == NULL) {
         return NULL;
     }
-    const bool is_extended = (frame->flags & HAL_CAN_EXTENDED) != 0u;
+    const bool is_extended = (frame->flags & HAL_CAN_EXTENDED) != 0;
     const uint8_t message = is_extended ? (uint8_t)MESSAGE_UNKNOWN : traffic->messages[frame->id];
     entry->side = side;
     entry->id = frame->id;
     entry->is_extended = is_extended;
-    entry->message = (message == (uint8_t)MESSAGE_UNKNOWN) ? TRAFFIC_UNKNOWN : message;
+    entry->message = (message == MESSAGE_UNKNOWN) ? TRAFFIC_UNKNOWN : message;
     entry->first_us = t_us;
     entry->length_min = UINT8_MAX;
     (void)memset(entry->bits_always, UINT8_MAX, sizeof entry->bits_always);
@@ -126,26 +126,26 @@ static traffic_id_t *add_id(traffic_t *traffic, hal_can_side_t side, const hal_c
 
 /** The slot of a 29-bit identifier: its own, or a free one. */
 static traffic_id_t **find_slot(traffic_t *traffic, hal_can_side_t side, uint32_t id) {
-    uint32_t slot = (id ^ (id >> 10u) ^ (id >> 20u)) % (uint32_t)SLOTS_29_BITS;
+    uint32_t slot = (id ^ (id >> 10) ^ (id >> 20)) % SLOTS_29_BITS;
     while ((traffic->extended[side][slot] != NULL) && (traffic->extended[side][slot]->id != id)) {
-        slot = (slot + 1u) % (uint32_t)SLOTS_29_BITS;
+        slot = (slot + 1) % SLOTS_29_BITS;
     }
     return &traffic->extended[side][slot];
 }
 
 /** The entry of a frame's identifier. @return NULL: there is no room for it */
 static traffic_id_t *entry_of(traffic_t *traffic, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
-    const bool is_extended = (frame->flags & HAL_CAN_EXTENDED) != 0u;
-    if (!is_extended && (frame->id >= (uint32_t)IDS_11_BITS)) {
+    const bool is_extended = (frame->flags & HAL_CAN_EXTENDED) != 0;
+    if (!is_extended && (frame->id >= IDS_11_BITS)) {
         return NULL;
     }
     traffic_id_t **slot = is_extended ? find_slot(traffic, side, frame->id) : &traffic->standard[side][frame->id];
     if (*slot == NULL) {
-        if (is_extended && (traffic->extended_count[side] == (size_t)IDS_29_BITS)) {
+        if (is_extended && (traffic->extended_count[side] == IDS_29_BITS)) {
             return NULL;
         }
         *slot = add_id(traffic, side, frame, t_us);
-        traffic->extended_count[side] += (is_extended && (*slot != NULL)) ? 1u : 0u;
+        traffic->extended_count[side] += (is_extended && (*slot != NULL)) ? 1 : 0;
     }
     return *slot;
 }
@@ -154,24 +154,24 @@ static void take_range(traffic_range_t *range, const signal_value_t *value, uint
     if (!value->present) {
         return;
     }
-    if (value->raw != 0u) {
-        range->set_at_us = (range->set == 0u) ? t_us : range->set_at_us;
+    if (value->raw != 0) {
+        range->set_at_us = (range->set == 0) ? t_us : range->set_at_us;
         range->set++;
     }
-    if (value->raw < (uint32_t)WORD_CHOICES) {
+    if (value->raw < WORD_CHOICES) {
         range->words[value->raw / BITS_PER_WORD] |= 1u << (value->raw % BITS_PER_WORD);
     }
     if (!value->valid) {
         range->invalid++;
         return;
     }
-    range->lowest = ((range->valid == 0u) || (value->scaled < range->lowest)) ? value->scaled : range->lowest;
-    range->highest = ((range->valid == 0u) || (value->scaled > range->highest)) ? value->scaled : range->highest;
+    range->lowest = ((range->valid == 0) || (value->scaled < range->lowest)) ? value->scaled : range->lowest;
+    range->highest = ((range->valid == 0) || (value->scaled > range->highest)) ? value->scaled : range->highest;
     range->valid++;
 }
 
 static void apply_to_engaged(traffic_t *traffic, uint64_t t_us, void (*apply)(traffic_watch_t *, uint64_t)) {
-    for (uint32_t message = 0u; message < AGV_COMMAND_COUNT; message++) {
+    for (uint32_t message = 0; message < AGV_COMMAND_COUNT; message++) {
         const traffic_id_t *entry = traffic_message(traffic, message);
         if ((entry != NULL) && (entry->watch->when == TRAFFIC_ENGAGED)) {
             apply(entry->watch, t_us);
@@ -202,7 +202,7 @@ static void take_mode(traffic_t *traffic, uint8_t flags, uint64_t t_us) {
 static void take_known(traffic_t *traffic, traffic_id_t *entry, const hal_can_frame_t *frame, uint64_t t_us) {
     const uint32_t message = entry->message;
     signal_value_t value;
-    for (size_t i = 0u; signals_read(message, i, frame->data, &value); i++) {
+    for (size_t i = 0; signals_read(message, i, frame->data, &value); i++) {
         take_range(&entry->ranges[i], &value, t_us);
     }
     bool restarts = (message >= AGV_COMMAND_COUNT) || agv_value_is_valid(message, frame->data);
@@ -214,13 +214,13 @@ static void take_known(traffic_t *traffic, traffic_id_t *entry, const hal_can_fr
     if ((entry->watch != NULL) && restarts) {
         watch_restart(entry->watch, t_us);
     }
-    if ((message == (uint32_t)AGV_MSG_VEHICLE_STATUS) && (entry->side == HAL_CAN_VEHICLE)) {
+    if ((message == AGV_MSG_VEHICLE_STATUS) && (entry->side == HAL_CAN_VEHICLE)) {
         take_mode(traffic, frame->data[6], t_us);
     }
 }
 
 static void take_bits(traffic_id_t *entry, const hal_can_frame_t *frame) {
-    for (size_t i = 0u; i < AGV_DLC; i++) {
+    for (size_t i = 0; i < AGV_DLC; i++) {
         entry->bits_ever[i] |= frame->data[i];
         entry->bits_always[i] &= frame->data[i];
     }
@@ -229,12 +229,12 @@ static void take_bits(traffic_id_t *entry, const hal_can_frame_t *frame) {
 }
 
 static void take_data(traffic_t *traffic, traffic_id_t *entry, const hal_can_frame_t *frame, uint64_t t_us) {
-    const bool is_well_formed = (frame->length == AGV_DLC) && ((frame->flags & HAL_CAN_FD) == 0u);
+    const bool is_well_formed = (frame->length == AGV_DLC) && ((frame->flags & HAL_CAN_FD) == 0);
     if ((entry->message != TRAFFIC_UNKNOWN) && !is_well_formed) {
         entry->malformed++;
         return;
     }
-    if (entry->count == 0u) {
+    if (entry->count == 0) {
         entry->first_us = t_us;
     } else if (entry->last_us >= traffic->started_us) {
         gaps_add(&entry->gaps, entry->last_us, t_us - entry->last_us);
@@ -250,12 +250,12 @@ static void take_data(traffic_t *traffic, traffic_id_t *entry, const hal_can_fra
 }
 
 void traffic_frame(traffic_t *traffic, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
-    if ((frame->flags & HAL_CAN_ERROR) != 0u) {
+    if ((frame->flags & HAL_CAN_ERROR) != 0) {
         traffic->totals.error++;
         return;
     }
     traffic_id_t *entry = entry_of(traffic, side, frame, t_us);
-    if ((frame->flags & HAL_CAN_REMOTE) != 0u) {
+    if ((frame->flags & HAL_CAN_REMOTE) != 0) {
         if (entry != NULL) {
             entry->malformed++;
         }
@@ -271,7 +271,7 @@ void traffic_frame(traffic_t *traffic, hal_can_side_t side, const hal_can_frame_
 
 void traffic_start(traffic_t *traffic, uint64_t t_us) {
     traffic->started_us = t_us;
-    for (size_t i = 0u; i < traffic->all_count; i++) {
+    for (size_t i = 0; i < traffic->all_count; i++) {
         if (traffic->all[i]->watch != NULL) {
             traffic->all[i]->watch->is_running = false;
         }
@@ -295,7 +295,7 @@ void traffic_end(traffic_t *traffic, uint64_t t_us) {
         end_engagement(traffic, t_us);
         traffic->engagement.is_engaged = false;
     }
-    for (size_t i = 0u; i < traffic->all_count; i++) {
+    for (size_t i = 0; i < traffic->all_count; i++) {
         if (traffic->all[i]->watch != NULL) {
             watch_stop(traffic->all[i]->watch, t_us);
         }
@@ -306,9 +306,9 @@ void traffic_end(traffic_t *traffic, uint64_t t_us) {
 
 bool traffic_times(const traffic_t *traffic, uint32_t id, uint64_t *first_us, uint64_t *last_us) {
     bool heard = false;
-    for (size_t side = 0u; (id < (uint32_t)IDS_11_BITS) && (side < (size_t)HAL_CAN_SIDES); side++) {
+    for (size_t side = 0; (id < IDS_11_BITS) && (side < HAL_CAN_SIDES); side++) {
         const traffic_id_t *entry = traffic->standard[side][id];
-        if ((entry != NULL) && (entry->count > 0u)) {
+        if ((entry != NULL) && (entry->count > 0)) {
             *first_us = (!heard || (entry->first_us < *first_us)) ? entry->first_us : *first_us;
             *last_us = (!heard || (entry->last_us > *last_us)) ? entry->last_us : *last_us;
             heard = true;
@@ -318,13 +318,13 @@ bool traffic_times(const traffic_t *traffic, uint32_t id, uint64_t *first_us, ui
 }
 
 bool traffic_heard(const traffic_t *traffic, uint32_t id) {
-    uint64_t first_us = 0u;
-    uint64_t last_us = 0u;
+    uint64_t first_us = 0;
+    uint64_t last_us = 0;
     return traffic_times(traffic, id, &first_us, &last_us);
 }
 
 const traffic_id_t *traffic_message(const traffic_t *traffic, uint32_t message) {
-    if (message >= (uint32_t)AGV_MSG_COUNT) {
+    if (message >= AGV_MSG_COUNT) {
         return NULL;
     }
     agv_ids_t ids;

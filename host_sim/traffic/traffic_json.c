@@ -12,7 +12,7 @@ static json_t *ms_of(uint64_t us) {
 }
 
 static json_t *gaps_json(const gaps_t *gaps) {
-    if (gaps->count == 0u) {
+    if (gaps->count == 0) {
         return json_null();
     }
     json_t *object = json_object();
@@ -40,8 +40,8 @@ static json_t *counter_json(const counter_use_t *use) {
 /** The words and invalid values of a choice that were seen. */
 static json_t *words_json(uint32_t message, size_t index, const traffic_range_t *range) {
     json_t *words = json_array();
-    for (uint32_t raw = 0u; raw < (uint32_t)CHOICES; raw++) {
-        if (((range->words[raw / WORD_BITS] >> (raw % WORD_BITS)) & 1u) != 0u) {
+    for (uint32_t raw = 0; raw < CHOICES; raw++) {
+        if (((range->words[raw / WORD_BITS] >> (raw % WORD_BITS)) & 1) != 0) {
             char text[SIGNALS_VALUE_SIZE];
             signals_raw_text(text, message, index, raw);
             json_add(words, json_string(text));
@@ -57,7 +57,7 @@ static json_t *range_json(uint32_t message, size_t index, const traffic_range_t 
     json_put(object, "unit", json_string(info->unit));
     if ((info->kind == SIGNAL_CHOICE) || (info->kind == SIGNAL_FLAG)) {
         json_put(object, "seen", words_json(message, index, range));
-    } else if (range->valid > 0u) {
+    } else if (range->valid > 0) {
         const signal_value_t lowest = {.scaled = range->lowest};
         const signal_value_t highest = {.scaled = range->highest};
         json_put(object, "min", json_real(signals_number(info, &lowest)));
@@ -78,11 +78,11 @@ static json_t *alarm_json(const signal_info_t *info, const traffic_range_t *rang
 static void add_signals(json_t *object, const traffic_id_t *entry) {
     json_t *values = json_array();
     json_t *alarms = json_array();
-    for (size_t i = 0u; i < signals_count(entry->message); i++) {
+    for (size_t i = 0; i < signals_count(entry->message); i++) {
         const signal_info_t *info = signals_info(entry->message, i);
         if (info->kind != SIGNAL_ALARM) {
             json_add(values, range_json(entry->message, i, &entry->ranges[i]));
-        } else if (entry->ranges[i].set > 0u) {
+        } else if (entry->ranges[i].set > 0) {
             json_add(alarms, alarm_json(info, &entry->ranges[i]));
         }
     }
@@ -102,9 +102,9 @@ static void add_deadline(json_t *object, const traffic_watch_t *watch) {
     json_put(object, "deadline_counts", json_string((watch->when == TRAFFIC_ENGAGED) ? "engaged" : "always"));
     json_put(object, "deadline_gap_ms", gaps_json(&watch->gaps));
     json_put(object, "margin_ms",
-             (watch->gaps.count > 0u) ? json_real(deadline_ms - ms_of_us(watch->gaps.longest_us)) : json_null());
+             (watch->gaps.count > 0) ? json_real(deadline_ms - ms_of_us(watch->gaps.longest_us)) : json_null());
     json_put(object, "late", json_integer((json_int_t)watch->late));
-    json_put(object, "first_late_ms", (watch->late > 0u) ? ms_of(watch->late_at_us) : json_null());
+    json_put(object, "first_late_ms", (watch->late > 0) ? ms_of(watch->late_at_us) : json_null());
 }
 
 json_t *traffic_id_json(const traffic_id_t *entry) {
@@ -130,7 +130,7 @@ json_t *traffic_id_json(const traffic_id_t *entry) {
 
 json_t *traffic_messages_json(const traffic_t *traffic) {
     json_t *array = json_array();
-    for (size_t i = 0u; traffic_at(traffic, i) != NULL; i++) {
+    for (size_t i = 0; traffic_at(traffic, i) != NULL; i++) {
         const traffic_id_t *entry = traffic_at(traffic, i);
         if (entry->message != TRAFFIC_UNKNOWN) {
             json_add(array, traffic_id_json(entry));

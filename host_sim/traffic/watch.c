@@ -4,7 +4,7 @@
 #include "text/units.h"
 
 void watch_init(traffic_watch_t *watch, const agv_config_t *config, uint32_t message) {
-    const bool is_command = (message < AGV_COMMAND_COUNT) && (message != (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND);
+    const bool is_command = (message < AGV_COMMAND_COUNT) && (message != AGV_MSG_TURN_SIGNAL_COMMAND);
     watch->when = is_command ? TRAFFIC_ENGAGED : TRAFFIC_ALWAYS;
     watch->setting = message_deadline_setting(message);
     watch->deadline_ms = agv_config_get(config, watch->setting);
@@ -14,7 +14,7 @@ static void add_gap(traffic_watch_t *watch, uint64_t gap_us) {
     const uint64_t deadline_us = (uint64_t)watch->deadline_ms * US_PER_MS;
     gaps_add(&watch->gaps, watch->since_us, gap_us);
     if (gap_us > deadline_us) {
-        watch->late_at_us = (watch->late == 0u) ? watch->since_us + deadline_us : watch->late_at_us;
+        watch->late_at_us = (watch->late == 0) ? watch->since_us + deadline_us : watch->late_at_us;
         watch->late++;
     }
 }

@@ -25,7 +25,7 @@ void progress_show(progress_t *progress, uint64_t done, const char *unit) {
         return;
     }
     const int64_t spent_ms = now_ms() - progress->began_ms;
-    const int64_t left_ms = (done > 0u) ? (spent_ms * (int64_t)(progress->total - done)) / (int64_t)done : 0;
+    const int64_t left_ms = (done > 0) ? (spent_ms * (int64_t)(progress->total - done)) / (int64_t)done : 0;
     const int filled = (int)((done * (uint64_t)WIDTH) / progress->total);
     progress->next_ms = now_ms() + EVERY_MS;
     (void)fprintf(stderr, "\r[%-*.*s] %3" PRIu64 " %%  %" PRIu64 " of %" PRIu64 " %s, %" PRId64 " s left\033[K", WIDTH,

@@ -13,8 +13,8 @@ void summary_print_time(const events_summary_t *summary, const char *name, const
 
 void summary_print_frames(const events_summary_t *summary, bool shadow) {
     const agv_counters_t *counters = &summary->counters;
-    uint64_t rejected = 0u;
-    for (size_t i = 0u; i < (size_t)AGV_REJECTED_KINDS; i++) {
+    uint64_t rejected = 0;
+    for (size_t i = 0; i < AGV_REJECTED_KINDS; i++) {
         rejected += counters->rejected[i];
     }
     (void)printf("frames: %" PRIu32 " received, %" PRIu64 " of them rejected, %" PRIu32 " dropped; %" PRIu32 " sent",

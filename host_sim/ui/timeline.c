@@ -61,7 +61,7 @@ static char gear_letter(uint8_t gear) {
     case AGV_GEAR_D:
         return 'D';
     default:
-        return (gear == 0u) ? '-' : '?';
+        return (gear == 0) ? '-' : '?';
     }
 }
 
@@ -89,12 +89,12 @@ static void print_vehicle(const timeline_t *timeline) {
 
 /** Print an action, and the vehicle if there is room for it; a long action is broken at blanks. */
 static void print_what(const timeline_t *timeline, const char *what) {
-    while (strlen(what) > (size_t)WHAT_ALONE) {
+    while (strlen(what) > WHAT_ALONE) {
         const size_t length = text_break(what, (size_t)WHAT_ALONE);
         (void)printf("%.*s\n%*s", (int)length, what, BEFORE_WHAT, "");
-        what = &what[length + ((what[length] == ' ') ? 1u : 0u)];
+        what = &what[length + ((what[length] == ' ') ? 1 : 0)];
     }
-    if (strlen(what) > (size_t)WHAT) {
+    if (strlen(what) > WHAT) {
         (void)printf("%s\n", what);
     } else {
         (void)printf("%-*s  ", WHAT, what);
@@ -145,8 +145,8 @@ void timeline_step(void *ctx, uint64_t t_ms, const scenario_step_t *step) {
 static void show_state(timeline_t *timeline, uint64_t t_us, const agv_event_t *event) {
     const char *reason = agv_fault_name((agv_fault_t)event->c);
 
-    timeline->shown = 0u;
-    if (event->b == (uint8_t)AGV_STATE_TRIPPED) {
+    timeline->shown = 0;
+    if (event->b == AGV_STATE_TRIPPED) {
         timeline->trip_us = now_us(timeline);
         timeline->wants_reaction = (reason != NULL) && (timeline->testbed != NULL);
     }
@@ -162,12 +162,12 @@ static void show_missing(timeline_t *timeline, uint64_t t_us, const char *what, 
 }
 
 static void show_fault(timeline_t *timeline, uint64_t t_us, const agv_event_t *event) {
-    const bool is_raised = event->c != 0u;
-    const bool has_parts = is_raised && (event->missing != 0u);
+    const bool is_raised = event->c != 0;
+    const bool has_parts = is_raised && (event->missing != 0);
     char parts[MISSING_TEXT_SIZE];
 
     line(timeline, t_us, "supervisor", "%s %s%s%s%s", agv_fault_name((agv_fault_t)event->a),
-         is_raised ? "raised" : "ended", (is_raised && (event->b == (uint8_t)AGV_CLASS_WARN)) ? " (warning)" : "",
+         is_raised ? "raised" : "ended", (is_raised && (event->b == AGV_CLASS_WARN)) ? " (warning)" : "",
          has_parts ? ": " : "", has_parts ? parts_text(event->missing, parts) : "");
 }
 
@@ -196,10 +196,10 @@ void timeline_event(void *ctx, const session_event_t *event) {
         show_fault(timeline, t_us, recorded);
         break;
     case AGV_EVENT_OUTPUT:
-        line(timeline, t_us, "supervisor", "safety output %s", (recorded->a != 0u) ? "closed" : "open");
+        line(timeline, t_us, "supervisor", "safety output %s", (recorded->a != 0) ? "closed" : "open");
         break;
     case AGV_EVENT_RESET:
-        show_missing(timeline, t_us, (recorded->a != 0u) ? "reset accepted" : "reset refused", recorded->missing);
+        show_missing(timeline, t_us, (recorded->a != 0) ? "reset accepted" : "reset refused", recorded->missing);
         break;
     case AGV_EVENT_STARTUP:
         show_missing(timeline, t_us, "still in INIT", recorded->missing);
@@ -231,7 +231,7 @@ static void show_sent(timeline_t *timeline, uint64_t t_us, const hal_can_frame_t
     const uint8_t *d = frame->data;
     char signals[SIGNALS_TEXT_SIZE];
 
-    if ((message == AGV_MSG_NONE) || ((timeline->shown & agv_message_bit(message)) != 0u)) {
+    if ((message == AGV_MSG_NONE) || ((timeline->shown & agv_message_bit(message)) != 0)) {
         return;
     }
     timeline->shown |= agv_message_bit(message);
@@ -267,12 +267,12 @@ static void show_reported(timeline_t *timeline, uint64_t t_us, const hal_can_fra
 static void show_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
     timeline_t *timeline = ctx;
 
-    if ((side != HAL_CAN_VEHICLE) || (frame->flags != 0u) || (frame->length != AGV_DLC)) {
+    if ((side != HAL_CAN_VEHICLE) || (frame->flags != 0) || (frame->length != AGV_DLC)) {
         return;
     }
     if (from == SCENARIO_FROM_SUPERVISOR) {
         show_sent(timeline, t_us, frame);
-    } else if (from == (int)VEHICLE_VCU) {
+    } else if (from == VEHICLE_VCU) {
         show_reported(timeline, t_us, frame);
     } else {
         return;
@@ -285,7 +285,7 @@ scenario_watch_t timeline_watch(timeline_t *timeline) {
 
 void timeline_received(timeline_t *timeline, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
     timeline->now_us = t_us;
-    if ((side == HAL_CAN_VEHICLE) && (frame->flags == 0u) && (frame->length == AGV_DLC)) {
+    if ((side == HAL_CAN_VEHICLE) && (frame->flags == 0) && (frame->length == AGV_DLC)) {
         show_reported(timeline, t_us, frame);
     }
 }
@@ -298,7 +298,7 @@ void timeline_sent(timeline_t *timeline, hal_can_side_t side, const hal_can_fram
 }
 
 static bool is_seen(const agv_event_t *event, agv_message_t message) {
-    return ((event->seen >> (uint32_t)message) & 1u) != 0u;
+    return ((event->seen >> (uint32_t)message) & 1) != 0;
 }
 
 void timeline_snapshot(timeline_t *timeline, const agv_event_t *event) {

@@ -44,13 +44,13 @@ static const char *eps_word(const vehicle_view_t *view) {
 
 /** A number with one or two decimals. */
 static void write_decimal(char text[16], int32_t value, int32_t per_one, int digits) {
-    (void)snprintf(text, 16u, "%s%d.%0*d", (value < 0) ? "-" : "", (int)(abs(value) / per_one), digits,
+    (void)snprintf(text, 16, "%s%d.%0*d", (value < 0) ? "-" : "", (int)(abs(value) / per_one), digits,
                    (int)(abs(value) % per_one));
 }
 
 static void add(char *text, size_t size, const char *separator, const char *word) {
     const size_t used = strlen(text);
-    (void)snprintf(&text[used], size - used, "%s%s", (used > 0u) ? separator : "", word);
+    (void)snprintf(&text[used], size - used, "%s%s", (used > 0) ? separator : "", word);
 }
 
 static void write_status(const vehicle_view_t *view, char status[STATUS_SIZE]) {
@@ -60,13 +60,13 @@ static void write_status(const vehicle_view_t *view, char status[STATUS_SIZE]) {
 
     write_decimal(speed, view->speed_mm_s / 10, 100, 2);
     write_decimal(angle, view->angle_ddeg, 10, 1);
-    for (unsigned bit = 0u; bit < (unsigned)ALARM_BITS; bit++) {
-        if ((view->alarms & (1u << bit)) != 0u) {
+    for (unsigned bit = 0; bit < ALARM_BITS; bit++) {
+        if ((view->alarms & (1u << bit)) != 0) {
             add(rest, sizeof rest, ", ", ALARMS[bit]);
         }
     }
     (void)snprintf(status, STATUS_SIZE, "gear %s, %s, %s m/s, throttle %u %%, steering %s deg, alarms: %.60s",
-                   gear_word(view->gear), vehicle_mode_word(view), speed, (unsigned)(view->throttle_permille / 10u),
+                   gear_word(view->gear), vehicle_mode_word(view), speed, (unsigned)(view->throttle_permille / 10),
                    angle, (rest[0] != '\0') ? rest : "none");
     rest[0] = '\0';
     for (int n = 0; n < VEHICLE_NODES; n++) {
@@ -90,7 +90,7 @@ void vehicle_show_clear(vehicle_show_t *show, bool line_typed) {
         (void)printf("%s" UP CLEAR_BELOW, (line_typed && show->is_typed) ? UP : "");
         (void)fflush(stdout);
         show->is_drawn = false;
-        show->draw_ms = 0u;
+        show->draw_ms = 0;
     }
 }
 
@@ -111,10 +111,10 @@ void vehicle_show_event(vehicle_show_t *show, uint64_t t_ms, const char *who, co
 static void show_alarms(vehicle_show_t *show, uint64_t t_ms, uint8_t before) {
     const uint8_t now = show->view.alarms;
 
-    for (unsigned bit = 0u; bit < (unsigned)ALARM_BITS; bit++) {
-        if (((now ^ before) & (1u << bit)) != 0u) {
+    for (unsigned bit = 0; bit < ALARM_BITS; bit++) {
+        if (((now ^ before) & (1u << bit)) != 0) {
             vehicle_show_event(show, t_ms, "vcu", "alarm %s %s", ALARMS[bit],
-                               ((now & (1u << bit)) != 0u) ? "raised" : "ended");
+                               ((now & (1u << bit)) != 0) ? "raised" : "ended");
         }
     }
 }
@@ -146,7 +146,7 @@ static void show_changes(vehicle_show_t *show, uint64_t t_ms, const vehicle_view
 /** The last column stays free: a line that fills the terminal would begin a new one. */
 static int columns(void) {
     struct winsize size;
-    const bool known = (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) && (size.ws_col > 0u);
+    const bool known = (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) && (size.ws_col > 0);
     return (known ? (int)size.ws_col : (int)DEFAULT_WIDTH) - 1;
 }
 

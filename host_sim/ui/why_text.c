@@ -22,7 +22,7 @@ void why_text_line(const char *label, int width, const char *text) {
 }
 
 bool why_text_has_clock(uint64_t first_us) {
-    return first_us / US_PER_S >= (uint64_t)CLOCK_FROM_S;
+    return first_us / US_PER_S >= CLOCK_FROM_S;
 }
 
 /** The time of day, with its date where that is not the one of the first frame. */
@@ -40,15 +40,15 @@ static void add_time_of_day(text_t *text, const why_text_t *shown, uint64_t t_us
 /** "12.30": seconds with two decimals. */
 static void add_seconds(text_t *text, uint64_t t_us) {
     const uint64_t rounded = (t_us + (US_PER_10_MS / 2)) / US_PER_10_MS;
-    text_add(text, "%" PRIu64 ".%02" PRIu64, rounded / 100u, rounded % 100u);
+    text_add(text, "%" PRIu64 ".%02" PRIu64, rounded / 100, rounded % 100);
 }
 
 void why_text_supervised(const why_t *why) {
     static const char *const names[WHY_STATES] = {"INIT", "STANDBY", "ACTIVE", "TRIPPED", "SAFE"};
-    text_t text = {.used = 0u};
+    text_t text = {.used = 0};
     add_seconds(&text, why_supervised_us(why));
     text_add(&text, " s ");
-    for (size_t i = 0u; i < (size_t)WHY_STATES; i++) {
+    for (size_t i = 0; i < WHY_STATES; i++) {
         text_add(&text, "  %s ", names[i]);
         add_seconds(&text, why_state_us(why, i));
     }
@@ -63,7 +63,7 @@ static void add_time(text_t *text, const char *what, uint64_t t_us) {
 }
 
 static void print_then(const why_text_t *shown, const why_trip_t *trip) {
-    text_t text = {.used = 0u};
+    text_t text = {.used = 0};
     if (!shown->is_recorder) {
         const bool none = trip->first_safe_us == WHY_NEVER;
         const bool is_shadow = why_is_shadow(shown->why);
@@ -92,7 +92,7 @@ static void print_then(const why_text_t *shown, const why_trip_t *trip) {
 }
 
 static void print_trip(const why_text_t *shown, const why_trip_t *trip, const char *label) {
-    text_t text = {.used = 0u};
+    text_t text = {.used = 0};
     text_add(&text, "at ");
     why_words_time(&text, trip->t_us);
     add_time_of_day(&text, shown, trip->t_us);
@@ -109,20 +109,20 @@ static bool is_consequence(const why_trip_t *trip) {
 }
 
 void why_text_trips(const why_text_t *shown) {
-    size_t printed = 0u;
-    size_t count = 0u;
-    for (size_t i = 0u; i < why_trip_count(shown->why); i++) {
+    size_t printed = 0;
+    size_t count = 0;
+    for (size_t i = 0; i < why_trip_count(shown->why); i++) {
         const why_trip_t *trip = why_trip(shown->why, i);
         if (is_consequence(trip)) {
             continue; /* among the faults */
         }
         count++;
-        if (printed < (size_t)TRIPS_SHOWN) {
-            print_trip(shown, trip, (printed == 0u) ? "tripped" : "");
+        if (printed < TRIPS_SHOWN) {
+            print_trip(shown, trip, (printed == 0) ? "tripped" : "");
             printed++;
         }
     }
-    if (count == 0u) {
+    if (count == 0) {
         why_text_line("tripped", WHY_TEXT_LABEL, shown->never);
     } else if (count > printed) {
         (void)printf("%*sand %zu time%s more: --why FILE has them all\n", WHY_TEXT_LABEL, "", count - printed,
@@ -147,7 +147,7 @@ static void widen(size_t *width, size_t length) {
 /** How often a fault was raised, in words. @return text */
 static const char *times_text(text_t *text, const why_fault_t *fault) {
     text_clear(text);
-    text_add(text, "%u %s", (unsigned)fault->times, (fault->times == 1u) ? "time" : "times");
+    text_add(text, "%u %s", (unsigned)fault->times, (fault->times == 1) ? "time" : "times");
     return text->bytes;
 }
 
@@ -160,7 +160,7 @@ static const char *time_text(text_t *text, uint64_t t_us) {
 static widths_t measure(const why_t *why) {
     widths_t widths = {0};
     text_t text;
-    for (size_t i = 0u; i < why_fault_count(why); i++) {
+    for (size_t i = 0; i < why_fault_count(why); i++) {
         const why_fault_t *fault = why_fault(why, i);
         widen(&widths.name, strlen(agv_fault_name(fault->fault)));
         widen(&widths.time, strlen(time_text(&text, fault->first_us)));
@@ -174,7 +174,7 @@ static void print_fault(const why_fault_t *fault, const widths_t *widths, bool i
     text_t time;
     text_t times;
     text_t lasted;
-    text_t text = {.used = 0u};
+    text_t text = {.used = 0};
     text_add(&text, "%-*s  %s  %*s   %-*s   %*s", (int)widths->name, agv_fault_name(fault->fault),
              agv_class_name(fault->fault_class), (int)widths->time, time_text(&time, fault->first_us),
              (int)widths->times, times_text(&times, fault), (int)widths->lasted, time_text(&lasted, fault->active_us));
@@ -190,7 +190,7 @@ static void print_fault(const why_fault_t *fault, const widths_t *widths, bool i
     } else {
         /* nothing more to say */
     }
-    if (fault->left_out > 0u) {
+    if (fault->left_out > 0) {
         text_add(&text, "  %u more event%s left out", (unsigned)fault->left_out, words_plural(fault->left_out));
     }
     why_text_line(is_first ? "faults" : "", WHY_TEXT_LABEL, text.bytes);
@@ -198,10 +198,10 @@ static void print_fault(const why_fault_t *fault, const widths_t *widths, bool i
 
 void why_text_faults(const why_t *why) {
     const widths_t widths = measure(why);
-    for (size_t i = 0u; i < why_fault_count(why); i++) {
-        print_fault(why_fault(why, i), &widths, i == 0u);
+    for (size_t i = 0; i < why_fault_count(why); i++) {
+        print_fault(why_fault(why, i), &widths, i == 0);
     }
-    if (why_fault_count(why) == 0u) {
+    if (why_fault_count(why) == 0) {
         why_text_line("faults", WHY_TEXT_LABEL, "none");
     }
 }

@@ -7,37 +7,37 @@
 
 /* Phases: at most two frames start in one millisecond. */
 const vehicle_row_t VEHICLE_ROWS[AGV_MSG_COUNT] = {
-    [AGV_MSG_TURN_SIGNAL_COMMAND] = {VEHICLE_AI, 9u, vehicle_ai_turn_signal_command},
-    [AGV_MSG_GEAR_COMMAND] = {VEHICLE_AI, 37u, vehicle_ai_gear_command},
-    [AGV_MSG_THROTTLE_COMMAND] = {VEHICLE_AI, 67u, vehicle_ai_throttle_command},
-    [AGV_MSG_STEERING_COMMAND] = {VEHICLE_AI, 8u, vehicle_ai_steering_command},
-    [AGV_MSG_VEHICLE_STATUS] = {VEHICLE_VCU, 0u, vehicle_vcu_vehicle_status},
-    [AGV_MSG_GEAR_STATUS] = {VEHICLE_VCU, 6u, vehicle_vcu_gear_status},
-    [AGV_MSG_THROTTLE_STATUS] = {VEHICLE_VCU, 4u, vehicle_vcu_throttle_status},
-    [AGV_MSG_STEERING_STATUS] = {VEHICLE_EPS, 1u, vehicle_eps_steering_status},
-    [AGV_MSG_EPS_STATUS] = {VEHICLE_EPS, 3u, vehicle_eps_eps_status},
-    [AGV_MSG_STEERING_POSITION] = {VEHICLE_EPS, 5u, vehicle_eps_steering_position},
-    [AGV_MSG_WHEEL_SPEED] = {VEHICLE_VCU, 2u, vehicle_vcu_wheel_speed},
+    [AGV_MSG_TURN_SIGNAL_COMMAND] = {VEHICLE_AI, 9, vehicle_ai_turn_signal_command},
+    [AGV_MSG_GEAR_COMMAND] = {VEHICLE_AI, 37, vehicle_ai_gear_command},
+    [AGV_MSG_THROTTLE_COMMAND] = {VEHICLE_AI, 67, vehicle_ai_throttle_command},
+    [AGV_MSG_STEERING_COMMAND] = {VEHICLE_AI, 8, vehicle_ai_steering_command},
+    [AGV_MSG_VEHICLE_STATUS] = {VEHICLE_VCU, 0, vehicle_vcu_vehicle_status},
+    [AGV_MSG_GEAR_STATUS] = {VEHICLE_VCU, 6, vehicle_vcu_gear_status},
+    [AGV_MSG_THROTTLE_STATUS] = {VEHICLE_VCU, 4, vehicle_vcu_throttle_status},
+    [AGV_MSG_STEERING_STATUS] = {VEHICLE_EPS, 1, vehicle_eps_steering_status},
+    [AGV_MSG_EPS_STATUS] = {VEHICLE_EPS, 3, vehicle_eps_eps_status},
+    [AGV_MSG_STEERING_POSITION] = {VEHICLE_EPS, 5, vehicle_eps_steering_position},
+    [AGV_MSG_WHEEL_SPEED] = {VEHICLE_VCU, 2, vehicle_vcu_wheel_speed},
 };
 
 void vehicle_defaults(vehicle_config_t *config) {
     *config = (vehicle_config_t){
         .park_guard = true,
-        .seed = 1u,
-        .gear_change_ms = 120u,
-        .walking_pace_mm_s = 800u,
-        .top_speed_mm_s = 4000u,
-        .acceleration_mm_s2 = 1000u,
-        .coasting_mm_s2 = 400u,
-        .braking_mm_s2 = 3000u,
-        .locked_mm_s2 = 5000u,
-        .steering_rate_ddeg_s = 3000u,
-        .eps_mode_change_ms = 200u,
-        .throttle_rise_pct_s = 500u,
-        .throttle_fall_pct_s = 500u,
-        .reported_speed_pct = 100u,
-        .ai_lost_ms = 1000u,
-        .eps_lost_ms = 100u,
+        .seed = 1,
+        .gear_change_ms = 120,
+        .walking_pace_mm_s = 800,
+        .top_speed_mm_s = 4000,
+        .acceleration_mm_s2 = 1000,
+        .coasting_mm_s2 = 400,
+        .braking_mm_s2 = 3000,
+        .locked_mm_s2 = 5000,
+        .steering_rate_ddeg_s = 3000,
+        .eps_mode_change_ms = 200,
+        .throttle_rise_pct_s = 500,
+        .throttle_fall_pct_s = 500,
+        .reported_speed_pct = 100,
+        .ai_lost_ms = 1000,
+        .eps_lost_ms = 100,
     };
     for (int m = 0; m < AGV_MSG_COUNT; m++) {
         config->phase_ms[m] = VEHICLE_ROWS[m].phase_ms;
@@ -50,7 +50,7 @@ void vehicle_init(vehicle_t *vehicle, const vehicle_config_t *config, vehicle_se
     vehicle->config = *config;
     vehicle->send = send;
     vehicle->send_ctx = ctx;
-    vehicle->random = (config->seed != 0u) ? config->seed : 1u;
+    vehicle->random = (config->seed != 0) ? config->seed : 1;
     vehicle->dynamics.gear = AGV_GEAR_P;
     vehicle->dynamics.target = AGV_GEAR_P;
     vehicle->eps.mode = AGV_EPS_MODE_ASSIST;
@@ -95,7 +95,7 @@ int32_t vehicle_limit_angle(int32_t angle_ddeg) {
 }
 
 int32_t vehicle_swing_ddeg(const vehicle_swing_t *swing, uint64_t now_ms) {
-    if (swing->period_ms == 0u) {
+    if (swing->period_ms == 0) {
         return 0;
     }
     const int64_t period_ms = swing->period_ms;
@@ -196,11 +196,11 @@ void vehicle_run(vehicle_t *vehicle, uint64_t now_ms) {
 }
 
 void vehicle_receive(vehicle_t *vehicle, vehicle_node_t node, uint64_t now_ms, const hal_can_frame_t *frame) {
-    if (((unsigned)node >= (unsigned)VEHICLE_NODES) || !vehicle->nodes[node].running) {
+    if (((unsigned)node >= VEHICLE_NODES) || !vehicle->nodes[node].running) {
         return;
     }
     const bool is_fd_for_vcu = (frame->flags == HAL_CAN_FD) && (node == VEHICLE_VCU);
-    if ((frame->flags != 0u) && !is_fd_for_vcu) {
+    if ((frame->flags != 0) && !is_fd_for_vcu) {
         return;
     }
     switch (node) {

@@ -211,8 +211,8 @@ typedef struct {
     bool ignored;
     bool patched;
     uint8_t value[AGV_DLC];
-    uint8_t held[AGV_DLC];                   /* bits whose value is that of the next frame */
-    vehicle_stretch_t patches[AGV_DLC * 8u]; /* a bit of the payload each */
+    uint8_t held[AGV_DLC];                  /* bits whose value is that of the next frame */
+    vehicle_stretch_t patches[AGV_DLC * 8]; /* a bit of the payload each */
     vehicle_past_t past;
 } vehicle_message_t;
 

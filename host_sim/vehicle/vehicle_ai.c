@@ -9,7 +9,7 @@
 
 void vehicle_ai_start(vehicle_t *vehicle, uint64_t now_ms) {
     (void)now_ms;
-    vehicle->ai = (vehicle_ai_t){.gear = 0u};
+    vehicle->ai = (vehicle_ai_t){.gear = 0};
 }
 
 static bool is_direction(uint8_t gear) {
@@ -59,7 +59,7 @@ void vehicle_ai_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_frame
         return;
     }
     if (frame->id == vehicle->id[AGV_MSG_VEHICLE_STATUS]) {
-        hear_mode(vehicle, (frame->data[MODE_BYTE] & AUTOPILOT_BIT) != 0u);
+        hear_mode(vehicle, (frame->data[MODE_BYTE] & AUTOPILOT_BIT) != 0);
     } else if (frame->id == vehicle->id[AGV_MSG_GEAR_STATUS]) {
         hear_gear(vehicle, frame->data[0]);
     } else if (frame->id == vehicle->id[AGV_MSG_WHEEL_SPEED]) {

@@ -57,8 +57,8 @@ static bool do_to_node(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action
 }
 
 static void set_delay(vehicle_message_t *message, uint32_t ms) {
-    if (message->delay_ms == 0u) {
-        message->past.count = 0u;
+    if (message->delay_ms == 0) {
+        message->past.count = 0;
     }
     message->delay_ms = ms;
 }
@@ -149,7 +149,7 @@ static bool do_to_ai(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t
         return true;
     case VEHICLE_DO_AI_IDLE:
         operator->ai_gear = AGV_GEAR_N;
-        operator->ai_throttle_permille = 0u;
+        operator->ai_throttle_permille = 0;
         operator->ai_angle_ddeg = 0;
         vehicle_ai_reconsider(vehicle);
         return true;
@@ -167,12 +167,12 @@ static bool do_to_ai(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t
 }
 
 static bool press(vehicle_operator_t *operator, const vehicle_action_t * action) {
-    if (action->count == 1u) {
+    if (action->count == 1) {
         operator->button_1 = action->on;
     } else {
         operator->button_2 = action->on;
     }
-    return (action->count == 1u) || (action->count == 2u);
+    return (action->count == 1) || (action->count == 2);
 }
 
 /** Signal or power of the remote controller came or went: wheels and gear box have run until now as it was before. */
@@ -180,7 +180,7 @@ static bool switch_remote(vehicle_t *vehicle, uint64_t now_ms, bool *lost, bool 
     vehicle_dynamics_move(vehicle, now_ms);
     *lost = is_lost;
     if (is_lost) {
-        vehicle->operator.remote_throttle_permille = 0u;
+        vehicle->operator.remote_throttle_permille = 0;
         vehicle->vcu.throttle_permille = vehicle->vcu.autopilot ? vehicle->vcu.throttle_permille : (uint16_t)0;
     }
     return true;
@@ -230,7 +230,7 @@ static bool is_in_range(const vehicle_action_t *action) {
     case VEHICLE_DO_VCU_ROLL:
         return abs(action->speed_mm_s) <= VEHICLE_ROLL_MAX_MM_S;
     case VEHICLE_DO_SEND:
-        return (unsigned)action->side < (unsigned)HAL_CAN_SIDES;
+        return (unsigned)action->side < HAL_CAN_SIDES;
     default:
         return true;
     }
@@ -238,7 +238,7 @@ static bool is_in_range(const vehicle_action_t *action) {
 
 static void stop_rogue_nodes(vehicle_t *vehicle) {
     for (unsigned i = 0; i < VEHICLE_ROGUES_MAX; i++) {
-        vehicle->rogues[i].left = 0u;
+        vehicle->rogues[i].left = 0;
     }
 }
 
@@ -248,10 +248,10 @@ bool vehicle_do(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *act
         return false;
     }
     if (action->what <= VEHICLE_DO_RECOVER) {
-        return ((unsigned)action->node < (unsigned)VEHICLE_NODES) && do_to_node(vehicle, now_ms, action);
+        return ((unsigned)action->node < VEHICLE_NODES) && do_to_node(vehicle, now_ms, action);
     }
     if (action->what <= VEHICLE_DO_UNPATCH) {
-        return ((unsigned)action->message < (unsigned)AGV_MSG_COUNT) && do_to_message(vehicle, now_ms, action);
+        return ((unsigned)action->message < AGV_MSG_COUNT) && do_to_message(vehicle, now_ms, action);
     }
     if (action->what <= VEHICLE_DO_VCU_SLOPPY) {
         return do_to_vcu(vehicle, now_ms, action);

@@ -95,10 +95,10 @@ static uint16_t throttle_of(const vehicle_t *vehicle, uint64_t now_ms) {
 
     /* No power while a gear engages: it would be the one of the gear before. */
     if (!vcu_runs(vehicle) || brakes(vehicle) || (vcu->gear == AGV_GEAR_P) || (vehicle->dynamics.gear != vcu->gear)) {
-        return 0u;
+        return 0;
     }
     if (vcu->autopilot && ((now_ms >= vcu->throttle_until_ms) || (now_ms >= vcu->ai_until_ms))) {
-        return 0u;
+        return 0;
     }
     return vcu->throttle_permille;
 }
@@ -116,7 +116,7 @@ static void move_throttle(vehicle_t *vehicle, uint64_t now_ms, uint64_t elapsed_
     const uint16_t pct_s = (target > dynamics->throttle_mpermille) ? vehicle->config.throttle_rise_pct_s : fall_pct_s;
     const uint64_t step = elapsed_ms * pct_s * MPERMILLE_PER_MS_PER_PCT_S;
 
-    if ((pct_s == 0u) || !vcu_runs(vehicle) || (step > INT32_MAX)) {
+    if ((pct_s == 0) || !vcu_runs(vehicle) || (step > INT32_MAX)) {
         dynamics->throttle_mpermille = target;
     } else {
         dynamics->throttle_mpermille = vehicle_approach(dynamics->throttle_mpermille, target, (int32_t)step);
@@ -127,7 +127,7 @@ void vehicle_dynamics_move(vehicle_t *vehicle, uint64_t now_ms) {
     vehicle_dynamics_t *dynamics = &vehicle->dynamics;
     const uint64_t elapsed = now_ms - dynamics->at_ms;
 
-    if (elapsed != 0u) {
+    if (elapsed != 0) {
         const pull_t pull = pull_of(vehicle);
         const uint64_t step = elapsed * pull.rate_mm_s2;
         dynamics->at_ms = now_ms;

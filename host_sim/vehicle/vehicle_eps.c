@@ -26,7 +26,7 @@ void vehicle_eps_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_fram
         return;
     }
     if (frame->id == vehicle->id[AGV_MSG_VEHICLE_STATUS]) {
-        const bool autopilot = (frame->data[MODE_BYTE] & AUTOPILOT_BIT) != 0u;
+        const bool autopilot = (frame->data[MODE_BYTE] & AUTOPILOT_BIT) != 0;
         const uint8_t wanted = autopilot ? AGV_EPS_MODE_ANGLE : AGV_EPS_MODE_ASSIST;
         if (wanted != eps->wanted) {
             vehicle_eps_move(vehicle, now_ms);
@@ -60,7 +60,7 @@ void vehicle_eps_move(vehicle_t *vehicle, uint64_t now_ms) {
     vehicle_eps_t *eps = &vehicle->eps;
     const uint64_t elapsed = now_ms - eps->at_ms;
 
-    if (elapsed != 0u) {
+    if (elapsed != 0) {
         const uint64_t step = elapsed * vehicle->config.steering_rate_ddeg_s;
         eps->at_ms = now_ms;
         eps->angle_mddeg =

@@ -53,9 +53,9 @@ static void corrupt_frame(vehicle_t *vehicle, vehicle_garbage_t kind, hal_can_fr
 }
 
 static void set_bit(uint8_t bytes[AGV_DLC], unsigned bit, const uint8_t value[AGV_DLC]) {
-    const uint8_t mask = (uint8_t)(1u << (bit % 8u));
+    const uint8_t mask = (uint8_t)(1u << (bit % 8));
 
-    bytes[bit / 8u] = (uint8_t)((bytes[bit / 8u] & ~mask) | (value[bit / 8u] & mask));
+    bytes[bit / 8] = (uint8_t)((bytes[bit / 8] & ~mask) | (value[bit / 8] & mask));
 }
 
 vehicle_stretch_t vehicle_stretch(uint16_t count, uint16_t every) {
@@ -65,20 +65,20 @@ vehicle_stretch_t vehicle_stretch(uint16_t count, uint16_t every) {
 
 /** One more frame. @return whether it is in the stretch, and not in a gap or after the end */
 static bool pass_frame(vehicle_stretch_t *stretch) {
-    if (stretch->left != 0u) {
+    if (stretch->left != 0) {
         count_down(&stretch->left);
-        stretch->gap_left = (stretch->left == 0u) ? stretch->gap : (uint16_t)0;
+        stretch->gap_left = (stretch->left == 0) ? stretch->gap : (uint16_t)0;
         return true;
     }
-    if (stretch->gap_left != 0u) {
+    if (stretch->gap_left != 0) {
         stretch->gap_left--;
-        stretch->left = (stretch->gap_left == 0u) ? stretch->frames : (uint16_t)0;
+        stretch->left = (stretch->gap_left == 0) ? stretch->frames : (uint16_t)0;
     }
     return false;
 }
 
 static bool goes_on(const vehicle_stretch_t *stretch) {
-    return (stretch->left != 0u) || (stretch->gap_left != 0u);
+    return (stretch->left != 0) || (stretch->gap_left != 0);
 }
 
 void vehicle_patch(vehicle_message_t *message, const vehicle_action_t *action) {
@@ -87,8 +87,8 @@ void vehicle_patch(vehicle_message_t *message, const vehicle_action_t *action) {
         const uint8_t held = (action->what == VEHICLE_DO_HOLD) ? mask : (uint8_t)0;
         message->held[byte] = (uint8_t)((message->held[byte] & action->keep[byte]) | held);
     }
-    for (unsigned bit = 0; bit < AGV_DLC * 8u; bit++) {
-        if ((action->keep[bit / 8u] >> (bit % 8u) & 1u) == 0u) {
+    for (unsigned bit = 0; bit < AGV_DLC * 8; bit++) {
+        if ((action->keep[bit / 8] >> (bit % 8) & 1) == 0) {
             set_bit(message->value, bit, action->value);
             message->patches[bit] = vehicle_stretch(action->count, action->every);
         }
@@ -107,7 +107,7 @@ static void take_held(vehicle_message_t *message, const uint8_t data[AGV_DLC]) {
     for (unsigned byte = 0; byte < AGV_DLC; byte++) {
         const uint8_t held = message->held[byte];
         message->value[byte] = (uint8_t)((message->value[byte] & ~held) | (data[byte] & held));
-        message->held[byte] = 0u;
+        message->held[byte] = 0;
     }
 }
 
@@ -115,7 +115,7 @@ static void apply_patches(vehicle_message_t *message, uint8_t data[AGV_DLC]) {
     bool more = false;
 
     take_held(message, data);
-    for (unsigned bit = 0; bit < AGV_DLC * 8u; bit++) {
+    for (unsigned bit = 0; bit < AGV_DLC * 8; bit++) {
         vehicle_stretch_t *patch = &message->patches[bit];
         if (pass_frame(patch)) {
             set_bit(data, bit, message->value);
@@ -135,8 +135,8 @@ static void delay_data(vehicle_message_t *state, agv_message_t message, uint8_t 
     memcpy(past->data[past->next], data, AGV_DLC);
     const uint32_t back = (wanted < past->count) ? wanted : past->count;
     memcpy(data, past->data[(past->next + VEHICLE_PAST_MAX - back) % VEHICLE_PAST_MAX], AGV_DLC);
-    past->next = (uint16_t)((past->next + 1u) % VEHICLE_PAST_MAX);
-    past->count = (past->count < VEHICLE_PAST_MAX - 1u) ? (uint16_t)(past->count + 1u) : past->count;
+    past->next = (uint16_t)((past->next + 1) % VEHICLE_PAST_MAX);
+    past->count = (past->count < VEHICLE_PAST_MAX - 1) ? (uint16_t)(past->count + 1) : past->count;
     if (at != MESSAGE_NO_COUNTER) {
         data[at] = counter;
     }
@@ -147,7 +147,7 @@ void vehicle_send_message(vehicle_t *vehicle, agv_message_t message, uint64_t no
     vehicle_message_t *state = &vehicle->messages[message];
     const vehicle_node_state_t *node = &vehicle->nodes[row->node];
     const uint32_t period_ms =
-        ((state->period_ms != 0u) ? state->period_ms : agv_message_cycle_ms(message)) + node->lag_ms;
+        ((state->period_ms != 0) ? state->period_ms : agv_message_cycle_ms(message)) + node->lag_ms;
     hal_can_frame_t frame = {.id = vehicle->id[message], .time_ms = (uint32_t)now_ms, .length = AGV_DLC};
 
     uint64_t *due_ms = &vehicle->message_ms[message];
@@ -157,7 +157,7 @@ void vehicle_send_message(vehicle_t *vehicle, agv_message_t message, uint64_t no
         *due_ms = now_ms + period_ms;
     }
     row->compose(vehicle, now_ms, frame.data);
-    if (state->delay_ms != 0u) {
+    if (state->delay_ms != 0) {
         delay_data(state, message, frame.data);
     }
     if (pass_frame(&state->muted)) {
@@ -178,22 +178,22 @@ void vehicle_recover(vehicle_t *vehicle, vehicle_node_t node) {
     vehicle_node_state_t *state = &vehicle->nodes[node];
 
     state->frozen = false;
-    state->lag_ms = 0u;
-    state->repeat = 0u;
+    state->lag_ms = 0;
+    state->repeat = 0;
     state->garbage = VEHICLE_GARBAGE_OFF;
     for (int m = 0; m < AGV_MSG_COUNT; m++) {
         vehicle_message_t *message = &vehicle->messages[m];
         if (VEHICLE_ROWS[m].node == node) {
-            message->muted = vehicle_stretch(0u, 0u);
+            message->muted = vehicle_stretch(0, 0);
             vehicle_unpatch(message);
-            message->period_ms = 0u;
-            message->delay_ms = 0u;
+            message->period_ms = 0;
+            message->delay_ms = 0;
         }
         message->ignored = message->ignored && (vehicle_receiver_of((agv_message_t)m) != node);
     }
     if (node == VEHICLE_EPS) {
         vehicle->operator.eps_stuck = false;
-        vehicle->operator.eps_hunt =(vehicle_swing_t){.period_ms = 0u};
+        vehicle->operator.eps_hunt =(vehicle_swing_t){.period_ms = 0};
     }
     if (node == VEHICLE_VCU) {
         vehicle->vcu_faults = (vehicle_vcu_faults_t){.rolls = false};
@@ -203,9 +203,9 @@ void vehicle_recover(vehicle_t *vehicle, vehicle_node_t node) {
 bool vehicle_add_rogue(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action) {
     for (unsigned i = 0; i < VEHICLE_ROGUES_MAX; i++) {
         vehicle_rogue_t *rogue = &vehicle->rogues[i];
-        if (rogue->left == 0u) {
-            rogue->left = (action->count != 0u) ? action->count : 1u;
-            rogue->period_ms = (action->ms != 0u) ? action->ms : 1u;
+        if (rogue->left == 0) {
+            rogue->left = (action->count != 0) ? action->count : 1;
+            rogue->period_ms = (action->ms != 0) ? action->ms : 1;
             rogue->due_ms = now_ms;
             rogue->side = action->side;
             rogue->frame = action->frame;
@@ -220,7 +220,7 @@ uint64_t vehicle_send_rogues(vehicle_t *vehicle, uint64_t now_ms) {
 
     for (unsigned i = 0; i < VEHICLE_ROGUES_MAX; i++) {
         vehicle_rogue_t *rogue = &vehicle->rogues[i];
-        if (rogue->left == 0u) {
+        if (rogue->left == 0) {
             continue;
         }
         if (now_ms >= rogue->due_ms) {
@@ -229,7 +229,7 @@ uint64_t vehicle_send_rogues(vehicle_t *vehicle, uint64_t now_ms) {
             count_down(&rogue->left);
             vehicle->send(vehicle->send_ctx, VEHICLE_ROGUE, rogue->side, &rogue->frame);
         }
-        if ((rogue->left != 0u) && (rogue->due_ms < next)) {
+        if ((rogue->left != 0) && (rogue->due_ms < next)) {
             next = rogue->due_ms;
         }
     }

@@ -47,8 +47,8 @@ void vehicle_vcu_engage(vehicle_t *vehicle, uint64_t now_ms) {
     }
     vehicle_dynamics_move(vehicle, now_ms);
     vcu->autopilot = true;
-    vcu->throttle_permille = 0u;
-    vcu->throttle_until_ms = 0u;
+    vcu->throttle_permille = 0;
+    vcu->throttle_until_ms = 0;
 }
 
 void vehicle_vcu_disengage(vehicle_t *vehicle, uint64_t now_ms) {
@@ -57,7 +57,7 @@ void vehicle_vcu_disengage(vehicle_t *vehicle, uint64_t now_ms) {
     if (vcu->autopilot) {
         vehicle_dynamics_move(vehicle, now_ms);
         vcu->autopilot = false;
-        vcu->throttle_permille = 0u;
+        vcu->throttle_permille = 0;
         vehicle_dynamics_move(vehicle, now_ms);
     }
 }
@@ -75,10 +75,10 @@ static void obey_gear(vehicle_t *vehicle, uint64_t now_ms, const uint8_t data[AG
     }
     if (command.gear == AGV_GEAR_P) {
         vcu->park_until_ms = now_ms + COMMAND_HOLD_MS;
-        vcu->throttle_permille = 0u;
+        vcu->throttle_permille = 0;
         vcu->gear = AGV_GEAR_P;
     } else if (vcu->autopilot) {
-        vcu->park_until_ms = 0u;
+        vcu->park_until_ms = 0;
         vcu->gear = command.gear;
     }
     vehicle_dynamics_move(vehicle, now_ms);
@@ -138,9 +138,9 @@ static void hear_eps(vehicle_t *vehicle, uint64_t now_ms, const uint8_t data[AGV
 
 void vehicle_vcu_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_frame_t *frame) {
     const uint16_t *id = vehicle->id;
-    const bool whole = (frame->length == AGV_DLC) && (frame->flags == 0u);
+    const bool whole = (frame->length == AGV_DLC) && (frame->flags == 0);
     const bool is_sloppy = vehicle->config.obeys_short_frames || vehicle->vcu_faults.is_sloppy;
-    const bool usable = whole || (is_sloppy && (frame->length > 0u));
+    const bool usable = whole || (is_sloppy && (frame->length > 0));
 
     if (frame->id == id[AGV_MSG_STEERING_STATUS]) {
         if (whole) {
@@ -148,7 +148,7 @@ void vehicle_vcu_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_fram
         }
     } else if (frame->id == id[AGV_MSG_EPS_STATUS]) {
         if (whole) {
-            vehicle->vcu.eps_fault = (frame->data[7] & (uint8_t)~AGV_EPS_FAULT_TEMP_ABOVE_110) != 0u;
+            vehicle->vcu.eps_fault = (frame->data[7] & (uint8_t)~AGV_EPS_FAULT_TEMP_ABOVE_110) != 0;
         }
     } else if (!usable) {
         return;
@@ -166,13 +166,13 @@ void vehicle_vcu_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_fram
 uint8_t vehicle_vcu_alarms(const vehicle_t *vehicle, uint64_t now_ms) {
     const vehicle_vcu_t *vcu = &vehicle->vcu;
     const vehicle_operator_t *operator= & vehicle->operator;
-    uint32_t alarms = 0u;
+    uint32_t alarms = 0;
 
-    alarms |= operator->remote_signal_lost ? AGV_VCU_ALARM_REMOTE_SIGNAL_LOST : 0u;
-    alarms |= operator->remote_power_lost ? AGV_VCU_ALARM_REMOTE_POWER_LOST : 0u;
-    alarms |= (now_ms >= vcu->ai_until_ms) ? AGV_VCU_ALARM_AI_CAN_LOST : 0u;
-    alarms |= (now_ms >= vcu->eps_until_ms) ? AGV_VCU_ALARM_EPS_CAN_BUS : 0u;
-    alarms |= vcu->eps_fault ? AGV_VCU_ALARM_EPS_HARDWARE : 0u;
+    alarms |= operator->remote_signal_lost ? AGV_VCU_ALARM_REMOTE_SIGNAL_LOST : 0;
+    alarms |= operator->remote_power_lost ? AGV_VCU_ALARM_REMOTE_POWER_LOST : 0;
+    alarms |= (now_ms >= vcu->ai_until_ms) ? AGV_VCU_ALARM_AI_CAN_LOST : 0;
+    alarms |= (now_ms >= vcu->eps_until_ms) ? AGV_VCU_ALARM_EPS_CAN_BUS : 0;
+    alarms |= vcu->eps_fault ? AGV_VCU_ALARM_EPS_HARDWARE : 0;
     return (uint8_t)alarms;
 }
 

@@ -21,13 +21,13 @@ why_evidence_t why_no_evidence(void) {
 }
 
 why_t *why_new(const agv_config_t *config) {
-    why_t *why = calloc(1u, sizeof *why);
+    why_t *why = calloc(1, sizeof *why);
     if (why == NULL) {
         return NULL;
     }
     why->config = *config;
     agv_config_ids(config, &why->ids);
-    why->is_gateway = config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    why->is_gateway = config->topology == AGV_TOPOLOGY_GATEWAY;
     why_life_start(why);
     why_intruder_start(why);
     why_track_start(why);
@@ -41,7 +41,7 @@ why_t *why_new(const agv_config_t *config) {
 }
 
 bool why_is_shadow(const why_t *why) {
-    return why->config.shadow == (uint16_t)AGV_SHADOW_ON;
+    return why->config.shadow == AGV_SHADOW_ON;
 }
 
 void why_is_recording(why_t *why) {
@@ -67,14 +67,14 @@ static agv_message_t message_of(const why_t *why, hal_can_side_t side, const hal
 }
 
 const why_evidence_t *why_history(const why_message_t *message, uint32_t back) {
-    if ((back >= message->count) || (back >= (uint32_t)WHY_HISTORY)) {
+    if ((back >= message->count) || (back >= WHY_HISTORY)) {
         return NULL;
     }
-    return &message->history[(message->count - 1u - back) % (uint32_t)WHY_HISTORY];
+    return &message->history[(message->count - 1 - back) % WHY_HISTORY];
 }
 
 const why_evidence_t *why_before(const why_message_t *message, uint64_t t_us) {
-    uint32_t back = 0u;
+    uint32_t back = 0;
     const why_evidence_t *frame = why_history(message, back);
     while ((frame != NULL) && (frame->t_us >= t_us)) {
         back++;
@@ -96,7 +96,7 @@ static void follow_trip(why_t *why, agv_message_t message, const why_evidence_t 
         return;
     }
     const bool ends_silence = (trip->kind == WHY_SILENCE) && (trip->message == message) && !trip->from_earlier_run;
-    trip->parked = trip->parked || (why->facts.gear == (uint32_t)AGV_GEAR_P);
+    trip->parked = trip->parked || (why->facts.gear == AGV_GEAR_P);
     trip->disengaged = trip->disengaged || !why->engagement.engaged;
     if (ends_silence && (trip->next_us == WHY_NEVER) && !why_was_withheld(trip)) {
         trip->next_us = t_us;
@@ -112,11 +112,11 @@ void why_frame(why_t *why, hal_can_side_t side, const hal_can_frame_t *frame, ui
     const agv_message_t message = message_of(why, side, frame);
     why->now_us = t_us;
     why_init_check(why, t_us);
-    if ((frame->flags & HAL_CAN_ERROR) != 0u) {
+    if ((frame->flags & HAL_CAN_ERROR) != 0) {
         why->error = evidence;
         return;
     }
-    const bool whole = (frame->flags == 0u) && (frame->length == AGV_DLC);
+    const bool whole = (frame->flags == 0) && (frame->length == AGV_DLC);
     if ((message == AGV_MSG_NONE) || !whole) {
         why_life_refuse(why, message, &evidence);
         why_intruder_frame(why, &evidence);
@@ -138,11 +138,11 @@ void why_frame(why_t *why, hal_can_side_t side, const hal_can_frame_t *frame, ui
 static bool is_safe(const why_t *why, const hal_can_frame_t *frame) {
     switch (agv_ids_find(&why->ids, frame->id)) {
     case AGV_MSG_GEAR_COMMAND:
-        return frame->data[0] == (uint8_t)AGV_GEAR_P;
+        return frame->data[0] == AGV_GEAR_P;
     case AGV_MSG_THROTTLE_COMMAND:
-        return frame->data[0] == 0u;
+        return frame->data[0] == 0;
     case AGV_MSG_TURN_SIGNAL_COMMAND:
-        return (frame->data[4] & AGV_SIGNAL_AUTOPILOT_OFF) != 0u;
+        return (frame->data[4] & AGV_SIGNAL_AUTOPILOT_OFF) != 0;
     default:
         return false;
     }
@@ -171,11 +171,11 @@ void why_sent(why_t *why, hal_can_side_t side, const hal_can_frame_t *frame, uin
 
 /** A trip more; NULL: no room. */
 static why_trip_t *add_trip(why_t *why) {
-    if (why->trip_count == (size_t)WHY_TRIPS_MAX) {
+    if (why->trip_count == WHY_TRIPS_MAX) {
         return NULL;
     }
     if (why->trip_count == why->trip_room) {
-        const size_t room = (why->trip_room == 0u) ? 4u : 2u * why->trip_room;
+        const size_t room = (why->trip_room == 0) ? 4 : 2 * why->trip_room;
         why_trip_t *trips = realloc(why->trips, room * sizeof *trips);
         if (trips == NULL) {
             return NULL;
@@ -184,7 +184,7 @@ static why_trip_t *add_trip(why_t *why) {
         why->trip_room = room;
     }
     why->trip_count++;
-    return &why->trips[why->trip_count - 1u];
+    return &why->trips[why->trip_count - 1];
 }
 
 /**
@@ -218,18 +218,18 @@ static void on_trip(why_t *why, agv_fault_t reason, uint64_t t_us, bool at_start
     if (trip == NULL) {
         return;
     }
-    why->open_trip = why->trip_count - 1u;
+    why->open_trip = why->trip_count - 1;
     /* What the supervisor sends in the pass that trips is reported before the trip. */
     if ((why->safe_frame.t_us != WHY_NEVER) && (why->safe_frame.t_us / US_PER_MS == t_us / US_PER_MS)) {
         trip->first_safe_us = why->safe_frame.t_us;
     }
-    if ((why->messages[AGV_MSG_WHEEL_SPEED].count > 0u) && why_wheels_are_slow(why)) {
+    if ((why->messages[AGV_MSG_WHEEL_SPEED].count > 0) && why_wheels_are_slow(why)) {
         trip->stopped_us = t_us;
     }
 }
 
 static size_t index_of(uint8_t state) {
-    for (size_t i = 0u; i < (size_t)WHY_STATES; i++) {
+    for (size_t i = 0; i < WHY_STATES; i++) {
         if (states[i] == state) {
             return i;
         }
@@ -239,7 +239,7 @@ static size_t index_of(uint8_t state) {
 
 static void leave_state(why_t *why, uint64_t t_us) {
     const size_t index = index_of(why->state);
-    if ((index < (size_t)WHY_STATES) && (t_us > why->state_since_us)) {
+    if ((index < WHY_STATES) && (t_us > why->state_since_us)) {
         why->state_us[index] += t_us - why->state_since_us;
     }
     why->state_since_us = t_us;
@@ -256,33 +256,33 @@ static void end_fault(why_t *why, agv_fault_t fault, uint64_t t_us) {
 /** The supervisor had no power from here on until it was started again. */
 static void stop(why_t *why, uint64_t stopped_us) {
     leave_state(why, stopped_us);
-    for (size_t i = 0u; i < why->fault_count; i++) {
+    for (size_t i = 0; i < why->fault_count; i++) {
         end_fault(why, (agv_fault_t)why->fault_order[i], stopped_us);
     }
-    why->state = 0u;
+    why->state = 0;
 }
 
 static void on_state(why_t *why, const agv_event_t *event, uint64_t t_us) {
     leave_state(why, t_us);
-    if (event->a == 0u) {
+    if (event->a == 0) {
         why->start_us = t_us;
         why->was_tripped = false;
-        why->startup_missing = 0u;
+        why->startup_missing = 0;
     }
-    if (why->state == (uint8_t)AGV_STATE_INIT) {
+    if (why->state == AGV_STATE_INIT) {
         why_init_end(why, t_us);
     }
     why->state = event->b;
     if (why->is_recorder) {
         why_engage_state(why, event, t_us);
     }
-    if ((event->b == (uint8_t)AGV_STATE_TRIPPED) && (event->c < (uint8_t)AGV_FAULT_COUNT)) {
-        on_trip(why, (agv_fault_t)event->c, t_us, event->a == 0u);
+    if ((event->b == AGV_STATE_TRIPPED) && (event->c < AGV_FAULT_COUNT)) {
+        on_trip(why, (agv_fault_t)event->c, t_us, event->a == 0);
     } else if (!agv_state_is_latched((agv_state_t)event->b)) {
         why->open_trip = SIZE_MAX;
     } else {
         why_trip_t *trip = open_trip(why);
-        if ((event->b == (uint8_t)AGV_STATE_SAFE) && (trip != NULL) && (trip->confirmed_us == WHY_NEVER)) {
+        if ((event->b == AGV_STATE_SAFE) && (trip != NULL) && (trip->confirmed_us == WHY_NEVER)) {
             trip->confirmed_us = t_us;
         }
     }
@@ -296,15 +296,15 @@ static bool is_consequence(const why_t *why, agv_fault_t fault) {
 static void raise(why_t *why, agv_fault_t fault, agv_fault_class_t fault_class, uint64_t t_us) {
     why_fault_t *entry = &why->faults[fault];
     const bool recorded = why->is_recording && is_consequence(why, fault);
-    if (entry->times == 0u) {
+    if (entry->times == 0) {
         entry->fault = fault;
         entry->first_us = t_us;
         entry->trip_us = WHY_NEVER;
         why->fault_order[why->fault_count] = (size_t)fault;
         why->fault_count++;
     }
-    entry->from_recording = recorded && (entry->from_recording || (entry->times == 0u));
-    entry->in_init = (why->state == (uint8_t)AGV_STATE_INIT) && (entry->in_init || (entry->times == 0u));
+    entry->from_recording = recorded && (entry->from_recording || (entry->times == 0));
+    entry->in_init = (why->state == AGV_STATE_INIT) && (entry->in_init || (entry->times == 0));
     entry->fault_class = fault_class;
     if ((fault_class == AGV_CLASS_TRIP) && (entry->trip_us == WHY_NEVER)) {
         entry->trip_us = t_us;
@@ -323,15 +323,15 @@ static void raise(why_t *why, agv_fault_t fault, agv_fault_class_t fault_class, 
 }
 
 static void on_fault(why_t *why, const agv_event_t *event, uint64_t t_us) {
-    if (event->a >= (uint8_t)AGV_FAULT_COUNT) {
+    if (event->a >= AGV_FAULT_COUNT) {
         return;
     }
-    if (event->c != 0u) {
+    if (event->c != 0) {
         raise(why, (agv_fault_t)event->a, (agv_fault_class_t)event->b, t_us);
     } else {
         end_fault(why, (agv_fault_t)event->a, t_us);
     }
-    why->faults[event->a].left_out += why->is_recorder ? event->left_out : 0u;
+    why->faults[event->a].left_out += why->is_recorder ? event->left_out : 0;
 }
 
 void why_event(void *ctx, const session_event_t *event) {
@@ -343,7 +343,7 @@ void why_event(void *ctx, const session_event_t *event) {
     why->snapshot = why->is_recorder ? &event->recorded : NULL;
     switch ((agv_event_kind_t)event->recorded.kind) {
     case AGV_EVENT_STATE:
-        if ((event->recorded.a == 0u) && (event->stopped_ms * US_PER_MS >= why->state_since_us)) {
+        if ((event->recorded.a == 0) && (event->stopped_ms * US_PER_MS >= why->state_since_us)) {
             stop(why, event->stopped_ms * US_PER_MS);
         }
         on_state(why, &event->recorded, t_us);
@@ -363,13 +363,13 @@ void why_event(void *ctx, const session_event_t *event) {
 void why_end(why_t *why, uint64_t t_us) {
     leave_state(why, t_us);
     why->now_us = t_us;
-    if (why->state == (uint8_t)AGV_STATE_INIT) {
+    if (why->state == AGV_STATE_INIT) {
         why->init_due_us = t_us;
         why_init_check(why, t_us);
         why_init_end(why, t_us);
-        why->missing = (why->startup_missing != 0u) ? why->startup_missing : why->missing;
+        why->missing = (why->startup_missing != 0) ? why->startup_missing : why->missing;
     }
-    for (size_t i = 0u; i < why->fault_count; i++) {
+    for (size_t i = 0; i < why->fault_count; i++) {
         why_fault_t *entry = &why->faults[why->fault_order[i]];
         if (entry->active) {
             entry->active_us += t_us - why->fault_since_us[entry->fault];

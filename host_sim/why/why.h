@@ -73,7 +73,7 @@ typedef struct {
 /** Whether a gateway did not pass on what came. */
 static inline bool why_was_withheld(const why_trip_t *trip) {
     const hal_can_frame_t *frame = &trip->refused.first.frame;
-    return (trip->refused.count > 0u) && (frame->flags == 0u) && (frame->length == AGV_DLC);
+    return (trip->refused.count > 0) && (frame->flags == 0) && (frame->length == AGV_DLC);
 }
 
 /** A fault that was raised. */
@@ -92,7 +92,7 @@ typedef struct {
 
 /** Whether a fault is one that trips, and did not, because it occurred in INIT, where only unresettable ones do. */
 static inline bool why_did_not_trip(const why_fault_t *fault) {
-    const bool trips = (agv_fault_flags((uint32_t)fault->fault) & AGV_FAULT_FLAG_UNRESETTABLE) != 0u;
+    const bool trips = (agv_fault_flags((uint32_t)fault->fault) & AGV_FAULT_FLAG_UNRESETTABLE) != 0;
     return fault->in_init && (fault->fault_class == AGV_CLASS_TRIP) && !trips;
 }
 

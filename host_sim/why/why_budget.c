@@ -34,9 +34,8 @@ static bool is_above_idle(const why_t *why) {
 
 static bool gear_is_another(const why_t *why) {
     const uint32_t gear = why->facts.gear;
-    return why->facts.command_known[AGV_MSG_GEAR_COMMAND] &&
-           ((gear == (uint32_t)AGV_GEAR_D) || (gear == (uint32_t)AGV_GEAR_R)) && (gear != why->facts.gear_command) &&
-           is_above_idle(why);
+    return why->facts.command_known[AGV_MSG_GEAR_COMMAND] && ((gear == AGV_GEAR_D) || (gear == AGV_GEAR_R)) &&
+           (gear != why->facts.gear_command) && is_above_idle(why);
 }
 
 static bool off_is_ignored(const why_t *why) {
@@ -44,7 +43,7 @@ static bool off_is_ignored(const why_t *why) {
 }
 
 static bool is_throttle_in_park(const why_t *why) {
-    return (why->facts.gear == (uint32_t)AGV_GEAR_P) && is_above_idle(why);
+    return (why->facts.gear == AGV_GEAR_P) && is_above_idle(why);
 }
 
 static int32_t clamp(int32_t value, int32_t limit) {
@@ -75,7 +74,7 @@ static bool has_no_mode(const why_t *why) {
     const int32_t slow = why->config.standstill_speed_mm_s;
     const bool wheels_turn = (abs(why->facts.left_mm_s) >= slow) || (abs(why->facts.right_mm_s) >= slow);
     const uint32_t limit = why->config.standstill_vcu_counts;
-    const bool vcu_moves = (limit != (uint32_t)ANY_SPEED) && (why->facts.vcu_speed > limit);
+    const bool vcu_moves = (limit != ANY_SPEED) && (why->facts.vcu_speed > limit);
     return why->facts.mode_known && is_no_mode(why) && (wheels_turn || vcu_moves);
 }
 
@@ -110,24 +109,24 @@ static const row_t rows[] = {
 enum { ROWS = sizeof rows / sizeof rows[0] };
 
 uint64_t why_budget_us(const why_t *why, agv_fault_t fault) {
-    for (size_t i = 0u; i < (size_t)ROWS; i++) {
+    for (size_t i = 0; i < ROWS; i++) {
         if (rows[i].fault == fault) {
             return (uint64_t)agv_config_get(&why->config, rows[i].setting) * US_PER_MS;
         }
     }
-    return 0u;
+    return 0;
 }
 
 /** Count the time since the last call: a bad microsecond adds 2, a good one takes 1. */
 static void count(const why_t *why, const row_t *row, why_tracker_t *tracker, uint64_t t_us) {
-    const uint64_t judged_us = row->judged ? why->engagement.judged_us : 0u;
+    const uint64_t judged_us = row->judged ? why->engagement.judged_us : 0;
     const uint64_t from_us = (tracker->since_us > judged_us) ? tracker->since_us : judged_us;
-    const uint64_t full = 2u * (uint64_t)US_PER_MS * agv_config_get(&why->config, row->setting);
+    const uint64_t full = 2 * (uint64_t)US_PER_MS * agv_config_get(&why->config, row->setting);
     if (from_us < t_us) {
         const uint64_t elapsed_us = t_us - from_us;
         if (tracker->bad) {
-            tracker->began_us = (tracker->value == 0u) ? tracker->bad_since_us : tracker->began_us;
-            tracker->value += 2u * elapsed_us;
+            tracker->began_us = (tracker->value == 0) ? tracker->bad_since_us : tracker->began_us;
+            tracker->value += 2 * elapsed_us;
             tracker->value = (tracker->value < full) ? tracker->value : full;
         } else {
             tracker->value -= (tracker->value > elapsed_us) ? elapsed_us : tracker->value;
@@ -137,23 +136,23 @@ static void count(const why_t *why, const row_t *row, why_tracker_t *tracker, ui
 }
 
 void why_budget_advance(why_t *why, uint64_t t_us) {
-    for (size_t i = 0u; i < (size_t)ROWS; i++) {
+    for (size_t i = 0; i < ROWS; i++) {
         why_tracker_t *tracker = &why->trackers[rows[i].fault];
-        if (tracker->bad || (tracker->value != 0u)) {
+        if (tracker->bad || (tracker->value != 0)) {
             count(why, &rows[i], tracker, t_us);
         }
     }
 }
 
 void why_budget_engage(why_t *why) {
-    for (size_t i = 0u; i < (size_t)ROWS; i++) {
+    for (size_t i = 0; i < ROWS; i++) {
         if (rows[i].judged) {
             why->trackers[rows[i].fault] = (why_tracker_t){.good = why_no_evidence(), .first = why_no_evidence()};
         }
     }
     why->facts.steering_progress = (why_progress_t){0};
     why->facts.throttle_progress = (why_progress_t){0};
-    for (size_t i = 0u; i < (size_t)AGV_COMMAND_COUNT; i++) {
+    for (size_t i = 0; i < AGV_COMMAND_COUNT; i++) {
         why->facts.command_known[i] = false;
     }
 }
@@ -162,11 +161,11 @@ void why_budget_engage(why_t *why) {
 static void follow_steps_back(why_progress_t *progress, bool bad, uint64_t full_us, uint64_t t_us) {
     const uint64_t elapsed_us = t_us - progress->at_us;
     progress->at_us = t_us;
-    if (progress->steps_back_us == 0u) {
+    if (progress->steps_back_us == 0) {
         return;
     }
     const uint64_t left_us = progress->steps_back_us;
-    progress->steps_back_us = bad ? full_us : ((left_us > elapsed_us) ? (left_us - elapsed_us) : 0u);
+    progress->steps_back_us = bad ? full_us : ((left_us > elapsed_us) ? (left_us - elapsed_us) : 0);
 }
 
 static int32_t beyond(int32_t off, int32_t limit) {
@@ -180,8 +179,8 @@ typedef struct {
 
 /** While the budget is 0, only steps back are kept, and those only if progress has just cleared it. */
 static void restart_progress(const why_tracker_t *tracker, why_progress_t *progress) {
-    const bool steps_back_count = progress->steps_back_us != 0u;
-    if (tracker->value == 0u) {
+    const bool steps_back_count = progress->steps_back_us != 0;
+    if (tracker->value == 0) {
         progress->gained = (steps_back_count && (progress->gained < 0)) ? progress->gained : 0;
         progress->gained_beyond = (steps_back_count && (progress->gained_beyond < 0)) ? progress->gained_beyond : 0;
     }
@@ -199,18 +198,18 @@ static void add_step(int32_t *gained, step_t step, int32_t limit, bool judged, b
 static void follow_progress(why_t *why, agv_fault_t fault, why_progress_t *progress, step_t step, int32_t enough,
                             uint64_t t_us) {
     why_tracker_t *tracker = &why->trackers[fault];
-    const uint64_t full_us = 2u * why_budget_us(why, fault);
+    const uint64_t full_us = 2 * why_budget_us(why, fault);
     follow_steps_back(progress, tracker->bad, full_us, t_us);
     restart_progress(tracker, progress);
-    const bool steps_back_count = progress->steps_back_us != 0u;
+    const bool steps_back_count = progress->steps_back_us != 0;
     const bool judged = t_us >= why->engagement.judged_us;
     add_step(&progress->gained, step, 0, judged, steps_back_count);
     if (steps_back_count) {
         add_step(&progress->gained_beyond, step, step.limit, judged, true);
     }
     const bool is_enough = (progress->gained >= enough) || (progress->gained_beyond >= enough);
-    if ((tracker->value != 0u) && is_enough) {
-        tracker->value = 0u;
+    if ((tracker->value != 0) && is_enough) {
+        tracker->value = 0;
         tracker->since_us = t_us;
         tracker->bad_since_us = t_us;
         progress->steps_back_us = full_us;
@@ -300,8 +299,8 @@ static void take_status(why_t *why, agv_message_t message, const why_evidence_t 
 
 /** Whether the commands are known with which a budget compares: before, no frame is a good one. */
 static bool has_commands(const why_t *why, const row_t *row) {
-    for (uint32_t command = 0u; command < AGV_COMMAND_COUNT; command++) {
-        if (((row->messages & BIT_OF(command)) != 0u) && !why->facts.command_known[command]) {
+    for (uint32_t command = 0; command < AGV_COMMAND_COUNT; command++) {
+        if (((row->messages & BIT_OF(command)) != 0) && !why->facts.command_known[command]) {
             return false;
         }
     }
@@ -310,13 +309,13 @@ static bool has_commands(const why_t *why, const row_t *row) {
 
 /** Evaluate what depends on a message, after it was read. */
 static void evaluate(why_t *why, agv_message_t message, const why_evidence_t *frame) {
-    for (size_t i = 0u; i < (size_t)ROWS; i++) {
+    for (size_t i = 0; i < ROWS; i++) {
         why_tracker_t *tracker = &why->trackers[rows[i].fault];
-        if ((rows[i].messages & BIT_OF(message)) == 0u) {
+        if ((rows[i].messages & BIT_OF(message)) == 0) {
             continue;
         }
         const bool bad = rows[i].is_bad(why);
-        if (bad && !tracker->bad && (tracker->value == 0u)) {
+        if (bad && !tracker->bad && (tracker->value == 0)) {
             const agv_message_t shown = why_row(rows[i].fault)->message;
             const why_evidence_t *before = why_before(&why->messages[shown], frame->t_us);
             tracker->good = ((before != NULL) && tracker->is_comparable) ? *before : why_no_evidence();
@@ -351,7 +350,7 @@ void why_budget_command(why_t *why, agv_message_t command, const why_evidence_t 
     } else if (command == AGV_MSG_GEAR_COMMAND) {
         why->facts.gear_command = data[0];
     } else {
-        why->facts.autopilot_off = (data[4] & AGV_SIGNAL_AUTOPILOT_OFF) != 0u;
+        why->facts.autopilot_off = (data[4] & AGV_SIGNAL_AUTOPILOT_OFF) != 0;
     }
     evaluate(why, command, frame);
 }

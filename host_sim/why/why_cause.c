@@ -14,24 +14,24 @@ static bool is_same(const why_evidence_t *one, const why_evidence_t *other) {
 }
 
 void why_show(why_trip_t *trip, const why_evidence_t *evidence) {
-    if ((evidence == NULL) || (evidence->t_us == WHY_NEVER) || (trip->evidence_count == (size_t)WHY_EVIDENCE_MAX)) {
+    if ((evidence == NULL) || (evidence->t_us == WHY_NEVER) || (trip->evidence_count == WHY_EVIDENCE_MAX)) {
         return;
     }
-    size_t at = 0u;
-    for (size_t i = 0u; i < trip->evidence_count; i++) {
+    size_t at = 0;
+    for (size_t i = 0; i < trip->evidence_count; i++) {
         if (is_same(&trip->evidence[i], evidence)) {
             return;
         }
-        at = (trip->evidence[i].t_us <= evidence->t_us) ? i + 1u : at;
+        at = (trip->evidence[i].t_us <= evidence->t_us) ? i + 1 : at;
     }
-    memmove(&trip->evidence[at + 1u], &trip->evidence[at], (trip->evidence_count - at) * sizeof trip->evidence[0]);
+    memmove(&trip->evidence[at + 1], &trip->evidence[at], (trip->evidence_count - at) * sizeof trip->evidence[0]);
     trip->evidence[at] = *evidence;
     trip->evidence_count++;
 }
 
 static void show_recent(const why_t *why, why_trip_t *trip, agv_message_t message, uint32_t count) {
-    for (uint32_t back = count; back > 0u; back--) {
-        why_show(trip, why_history(&why->messages[message], back - 1u));
+    for (uint32_t back = count; back > 0; back--) {
+        why_show(trip, why_history(&why->messages[message], back - 1));
     }
 }
 
@@ -64,7 +64,7 @@ static uint64_t limit_us(const why_trip_t *trip) {
 
 /** What lasted for its limit until now began so long ago. */
 static void began_before(why_trip_t *trip) {
-    trip->cause_us = (trip->t_us > limit_us(trip)) ? trip->t_us - limit_us(trip) : 0u;
+    trip->cause_us = (trip->t_us > limit_us(trip)) ? trip->t_us - limit_us(trip) : 0;
 }
 
 /** The first frame that should have come and did not. Commands need not come before the engagement. */
@@ -80,13 +80,13 @@ static void explain_silence(const why_t *why, why_trip_t *trip) {
         trip->cause_us = message->beat_us + cycle_us;
     }
     trip->refused = message->refused;
-    if (trip->refused.count > 0u) {
+    if (trip->refused.count > 0) {
         why_show(trip, &message->refused.first);
     }
     if (why_is_command(trip->message) && (engaged_us != WHY_NEVER) && (trip->cause_us < engaged_us)) {
         trip->cause_us = engaged_us;
         trip->from_engagement = true;
-        if ((trip->message == AGV_MSG_TURN_SIGNAL_COMMAND) && (message->count == 0u)) {
+        if ((trip->message == AGV_MSG_TURN_SIGNAL_COMMAND) && (message->count == 0)) {
             set_limit(why, trip, AGV_SETTING_ai_never_seen_timeout_ms, "ms");
         }
     }
@@ -105,8 +105,8 @@ static void explain_stuck(const why_t *why, why_trip_t *trip) {
 /** It counts while engaged only: a bit that was set before, from the 363h of the engagement on. */
 static void begin_with_engagement(const why_t *why, why_trip_t *trip) {
     const why_engagement_t *engagement = &why->engagement;
-    const why_evidence_t *frame = &engagement->frames[(engagement->count - 1u) % (uint32_t)WHY_ENGAGEMENTS];
-    if ((trip->reason == AGV_FAULT_VCU_AI_CAN_LOST) && (engagement->count > 0u) && (trip->cause_us < frame->t_us)) {
+    const why_evidence_t *frame = &engagement->frames[(engagement->count - 1) % WHY_ENGAGEMENTS];
+    if ((trip->reason == AGV_FAULT_VCU_AI_CAN_LOST) && (engagement->count > 0) && (trip->cause_us < frame->t_us)) {
         set_frame(trip, frame);
     }
 }
@@ -129,7 +129,7 @@ static void explain_tracked(const why_t *why, why_trip_t *trip) {
         begin_with_engagement(why, trip);
     }
     if (other != AGV_MSG_NONE) {
-        show_recent(why, trip, other, 2u);
+        show_recent(why, trip, other, 2);
     }
 }
 
@@ -139,17 +139,16 @@ enum { FLICKER_US = 220000 };
 /** The first of the engagements that were too many, or the first 363h of a flicker. */
 static void explain_flapping(const why_t *why, why_trip_t *trip) {
     const why_engagement_t *engagement = &why->engagement;
-    const uint32_t kept =
-        (engagement->count < (uint32_t)WHY_ENGAGEMENTS) ? engagement->count : (uint32_t)WHY_ENGAGEMENTS;
-    if (engagement->manual_us >= (uint64_t)FLICKER_US) {
+    const uint32_t kept = (engagement->count < WHY_ENGAGEMENTS) ? engagement->count : (uint32_t)WHY_ENGAGEMENTS;
+    if (engagement->manual_us >= FLICKER_US) {
         trip->cause_us = engagement->manual.t_us;
         why_show(trip, &engagement->manual);
         show_recent(why, trip, trip->message, RECENT_FRAMES);
         return;
     }
-    for (uint32_t i = 0u; i < kept; i++) {
-        const why_evidence_t *frame = &engagement->frames[(engagement->count - kept + i) % (uint32_t)WHY_ENGAGEMENTS];
-        if (i == 0u) {
+    for (uint32_t i = 0; i < kept; i++) {
+        const why_evidence_t *frame = &engagement->frames[(engagement->count - kept + i) % WHY_ENGAGEMENTS];
+        if (i == 0) {
             trip->cause_us = frame->t_us;
         }
         why_show(trip, frame);
@@ -182,13 +181,13 @@ static void explain_value(const why_t *why, why_trip_t *trip) {
         return;
     }
     set_message(why, trip, (agv_message_t)agv_ids_find(&why->ids, frame->id));
-    const bool whole = (frame->length == AGV_DLC) && (frame->flags == 0u);
+    const bool whole = (frame->length == AGV_DLC) && (frame->flags == 0);
     if (whole) {
         why_value_limit(trip);
     }
     show_recent(why, trip, trip->message, RECENT_FRAMES);
     set_frame(trip, &why->bad_command);
-    for (uint32_t back = 0u; back < (uint32_t)WHY_HISTORY; back++) {
+    for (uint32_t back = 0; back < WHY_HISTORY; back++) {
         const why_evidence_t *before = why_history(&why->messages[trip->message], back);
         if ((before != NULL) && (before->t_us < why->bad_command.t_us) &&
             agv_value_is_valid(trip->message, before->frame.data)) {
@@ -201,14 +200,14 @@ static void explain_value(const why_t *why, why_trip_t *trip) {
 /** The command that came too fast: that with the highest score. */
 static void explain_too_fast(const why_t *why, why_trip_t *trip) {
     agv_message_t command = AGV_MSG_TURN_SIGNAL_COMMAND;
-    for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
+    for (uint32_t i = 0; i < AGV_COMMAND_COUNT; i++) {
         if (why->too_fast[i].value > why->too_fast[command].value) {
             command = (agv_message_t)i;
         }
     }
     const why_tracker_t *score = &why->too_fast[command];
     set_message(why, trip, command);
-    if (score->value != 0u) {
+    if (score->value != 0) {
         trip->cause_us = score->began_us;
         trip->last_good_us = score->good.t_us;
         trip->bad_frames = score->bad_frames;
@@ -242,7 +241,7 @@ static void explain_bus(const why_t *why, why_trip_t *trip) {
 
 /** What the vehicle did not do, counted from the trip. */
 static void explain_vehicle(const why_t *why, why_trip_t *trip) {
-    if ((trip->reason == AGV_FAULT_SAFE_STATE_UNCONFIRMED) && ((why->facts.mode_bits & AGV_VCU_FLAG_AUTOPILOT) == 0u)) {
+    if ((trip->reason == AGV_FAULT_SAFE_STATE_UNCONFIRMED) && ((why->facts.mode_bits & AGV_VCU_FLAG_AUTOPILOT) == 0)) {
         set_message(why, trip, AGV_MSG_GEAR_STATUS);
         set_limit(why, trip, AGV_SETTING_park_confirm_timeout_ms, "ms");
     }
@@ -271,8 +270,7 @@ static void explain_own(const why_t *why, why_trip_t *trip) {
 
 /** A fault bit of which a single frame is enough is no score. */
 static why_kind_t kind_of(const why_t *why, const why_row_t *row) {
-    const bool one =
-        (row->kind == WHY_SCORE) && (row->mask != 0u) && (agv_config_get(&why->config, row->setting) == 1u);
+    const bool one = (row->kind == WHY_SCORE) && (row->mask != 0) && (agv_config_get(&why->config, row->setting) == 1);
     return one ? WHY_BIT : row->kind;
 }
 

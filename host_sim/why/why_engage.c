@@ -19,8 +19,8 @@ static bool continues(const why_t *why, uint64_t t_us) {
 static void begin(why_t *why, const why_evidence_t *frame) {
     why_engagement_t *engagement = &why->engagement;
     engagement->engaged = true;
-    engagement->off_frames = 0u;
-    engagement->frames[engagement->count % (uint32_t)WHY_ENGAGEMENTS] = *frame;
+    engagement->off_frames = 0;
+    engagement->frames[engagement->count % WHY_ENGAGEMENTS] = *frame;
     engagement->count++;
     if (!continues(why, frame->t_us)) {
         engagement->began_us = frame->t_us;
@@ -40,16 +40,16 @@ static void end(why_t *why, uint64_t t_us) {
 static void follow_flicker(const why_t *why, why_engagement_t *engagement, const why_evidence_t *frame, bool manual) {
     const uint32_t before = why->facts.mode_bits & (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT);
     const uint64_t elapsed_us = frame->t_us - engagement->at_us;
-    const uint64_t less_us = elapsed_us / 2u;
+    const uint64_t less_us = elapsed_us / 2;
     engagement->at_us = frame->t_us;
     if (!engagement->engaged) {
-        engagement->manual_us = 0u;
+        engagement->manual_us = 0;
     } else if (before == AGV_VCU_FLAG_MANUAL) {
         engagement->manual_us += elapsed_us;
     } else {
         engagement->manual_us -= (engagement->manual_us > less_us) ? less_us : engagement->manual_us;
     }
-    if (manual && (engagement->manual_us == 0u)) {
+    if (manual && (engagement->manual_us == 0)) {
         engagement->manual = *frame;
     }
 }
@@ -60,9 +60,9 @@ void why_engage_frame(why_t *why, const why_evidence_t *frame) {
     why_budget_advance(why, frame->t_us);
     follow_flicker(why, engagement, frame, bits == AGV_VCU_FLAG_MANUAL);
     if (bits == (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT)) {
-        engagement->off_frames = 0u; /* the mode before remains */
-    } else if ((bits & AGV_VCU_FLAG_AUTOPILOT) != 0u) {
-        engagement->off_frames = 0u;
+        engagement->off_frames = 0; /* the mode before remains */
+    } else if ((bits & AGV_VCU_FLAG_AUTOPILOT) != 0) {
+        engagement->off_frames = 0;
         if (!engagement->engaged) {
             begin(why, frame);
         }
@@ -77,10 +77,10 @@ void why_engage_frame(why_t *why, const why_evidence_t *frame) {
 }
 
 void why_engage_state(why_t *why, const agv_event_t *event, uint64_t t_us) {
-    if (event->a == (uint8_t)AGV_STATE_ACTIVE) {
+    if (event->a == AGV_STATE_ACTIVE) {
         end(why, t_us);
     }
-    if ((event->b == (uint8_t)AGV_STATE_ACTIVE) && !continues(why, t_us)) {
+    if ((event->b == AGV_STATE_ACTIVE) && !continues(why, t_us)) {
         why->engagement.began_us = t_us;
     }
 }

@@ -23,15 +23,15 @@ uint64_t why_state_us(const why_t *why, size_t index) {
 }
 
 uint64_t why_supervised_us(const why_t *why) {
-    uint64_t sum = 0u;
-    for (size_t i = 1u; i < (size_t)WHY_STATES; i++) {
+    uint64_t sum = 0;
+    for (size_t i = 1; i < WHY_STATES; i++) {
         sum += why->state_us[i];
     }
     return sum;
 }
 
 bool why_was_engaged(const why_t *why) {
-    return (why->engagement.count > 0u) || (why->state_us[WHY_ACTIVE] > 0u); /* a flight recorder has no frames */
+    return (why->engagement.count > 0) || (why->state_us[WHY_ACTIVE] > 0); /* a flight recorder has no frames */
 }
 
 bool why_began_in_autopilot(const why_t *why) {
@@ -40,7 +40,7 @@ bool why_began_in_autopilot(const why_t *why) {
 
 bool why_left_init_late(const why_t *why) {
     const uint64_t normal_us = ((uint64_t)why->config.init_hold_ms + (uint64_t)MS_PER_S) * US_PER_MS;
-    return (why_supervised_us(why) == 0u) || (why->state_us[WHY_INIT] > normal_us);
+    return (why_supervised_us(why) == 0) || (why->state_us[WHY_INIT] > normal_us);
 }
 
 const char *why_unconfirmed(const why_trip_t *trip) {

@@ -11,23 +11,23 @@
 enum { CHECK_EVERY_US = 10000, FIRST_FRAMES_US = 200000 };
 
 static uint64_t deadline_us(const why_t *why, agv_message_t number) {
-    return ((uint64_t)agv_config_get(&why->config, message_deadline_setting(number)) + 1u) * US_PER_MS;
+    return ((uint64_t)agv_config_get(&why->config, message_deadline_setting(number)) + 1) * US_PER_MS;
 }
 
 /** Whether a heartbeat that INIT waits for beats. */
 static bool beats(const why_t *why, agv_message_t number, uint64_t t_us) {
     const why_message_t *message = &why->messages[number];
-    return (message->count > 1u) && (t_us <= message->beat_us + deadline_us(why, number));
+    return (message->count > 1) && (t_us <= message->beat_us + deadline_us(why, number));
 }
 
 static bool is_fresh(const why_t *why, agv_message_t number, uint64_t t_us) {
     const why_message_t *message = &why->messages[number];
-    return (message->count > 0u) && (t_us <= message->last_us + deadline_us(why, number));
+    return (message->count > 0) && (t_us <= message->last_us + deadline_us(why, number));
 }
 
 /** The messages whose silence trips must be fresh, apart from those with an alive counter: they have to beat. */
 static bool are_fresh(const why_t *why, uint64_t t_us) {
-    for (int i = 0; i < (int)AGV_FAULT_COUNT; i++) {
+    for (int i = 0; i < AGV_FAULT_COUNT; i++) {
         const why_row_t *row = why_row((agv_fault_t)i);
         const bool counts = (row->kind == WHY_SILENCE) && !why_is_command(row->message) &&
                             (message_counter_at(row->message) == MESSAGE_NO_COUNTER) &&
@@ -40,7 +40,7 @@ static bool are_fresh(const why_t *why, uint64_t t_us) {
 }
 
 static bool has_trip_cause(const why_t *why) {
-    for (size_t i = 0u; i < why->fault_count; i++) {
+    for (size_t i = 0; i < why->fault_count; i++) {
         const why_fault_t *fault = &why->faults[why->fault_order[i]];
         if (fault->active && (fault->fault_class == AGV_CLASS_TRIP)) {
             return true;
@@ -65,32 +65,32 @@ static bool is_slow(const why_t *why, uint64_t t_us) {
 }
 
 static uint32_t missing_now(const why_t *why, uint64_t t_us) {
-    const bool manual = why->facts.mode_known && ((why->facts.mode_bits & AGV_VCU_FLAG_MANUAL) != 0u) &&
-                        ((why->facts.mode_bits & AGV_VCU_FLAG_AUTOPILOT) == 0u);
-    uint32_t missing = 0u;
-    missing |= beats(why, AGV_MSG_VEHICLE_STATUS, t_us) ? 0u : AGV_MISSING_VCU_HEARTBEAT;
-    missing |= beats(why, AGV_MSG_STEERING_STATUS, t_us) ? 0u : AGV_MISSING_EPS_HEARTBEAT;
-    missing |= manual ? 0u : AGV_MISSING_MANUAL;
-    missing |= are_fresh(why, t_us) ? 0u : AGV_MISSING_MESSAGES;
-    missing |= is_slow(why, t_us) ? 0u : AGV_MISSING_STANDSTILL;
-    missing |= has_trip_cause(why) ? AGV_MISSING_TRIP_CAUSE : 0u;
+    const bool manual = why->facts.mode_known && ((why->facts.mode_bits & AGV_VCU_FLAG_MANUAL) != 0) &&
+                        ((why->facts.mode_bits & AGV_VCU_FLAG_AUTOPILOT) == 0);
+    uint32_t missing = 0;
+    missing |= beats(why, AGV_MSG_VEHICLE_STATUS, t_us) ? 0 : AGV_MISSING_VCU_HEARTBEAT;
+    missing |= beats(why, AGV_MSG_STEERING_STATUS, t_us) ? 0 : AGV_MISSING_EPS_HEARTBEAT;
+    missing |= manual ? 0 : AGV_MISSING_MANUAL;
+    missing |= are_fresh(why, t_us) ? 0 : AGV_MISSING_MESSAGES;
+    missing |= is_slow(why, t_us) ? 0 : AGV_MISSING_STANDSTILL;
+    missing |= has_trip_cause(why) ? AGV_MISSING_TRIP_CAUSE : 0;
     return missing;
 }
 
 void why_init_start(why_t *why) {
-    for (size_t bit = 0u; bit < (size_t)WHY_MISSING_BITS; bit++) {
+    for (size_t bit = 0; bit < WHY_MISSING_BITS; bit++) {
         why->missing_us[bit] = WHY_NEVER;
     }
 }
 
 void why_init_check(why_t *why, uint64_t t_us) {
-    if ((why->state != (uint8_t)AGV_STATE_INIT) || (t_us < why->init_due_us)) {
+    if ((why->state != AGV_STATE_INIT) || (t_us < why->init_due_us)) {
         return;
     }
     const uint32_t missing = missing_now(why, t_us);
     why->init_due_us = t_us + (uint64_t)CHECK_EVERY_US;
-    for (size_t bit = 0u; bit < (size_t)WHY_MISSING_BITS; bit++) {
-        if (((missing >> bit) & 1u) != 0u) {
+    for (size_t bit = 0; bit < WHY_MISSING_BITS; bit++) {
+        if (((missing >> bit) & 1) != 0) {
             why->missing_us[bit] = t_us;
         }
     }
@@ -98,13 +98,13 @@ void why_init_check(why_t *why, uint64_t t_us) {
 
 /** What is missing now; if nothing is, what was within the time for which everything has to be there, a start apart. */
 void why_init_end(why_t *why, uint64_t t_us) {
-    const uint64_t hold_us = ((uint64_t)why->config.init_hold_ms * US_PER_MS) + (2u * (uint64_t)CHECK_EVERY_US);
+    const uint64_t hold_us = ((uint64_t)why->config.init_hold_ms * US_PER_MS) + (2 * (uint64_t)CHECK_EVERY_US);
     const uint32_t now_missing = missing_now(why, t_us);
     uint32_t missing = now_missing;
-    for (size_t bit = 0u; (bit < (size_t)WHY_MISSING_BITS) && (now_missing == 0u); bit++) {
+    for (size_t bit = 0; (bit < WHY_MISSING_BITS) && (now_missing == 0); bit++) {
         const uint64_t last_us = why->missing_us[bit];
         const bool counts = (last_us != WHY_NEVER) && (last_us > why->start_us + (uint64_t)FIRST_FRAMES_US);
-        missing |= (counts && (last_us + hold_us >= t_us)) ? (1u << bit) : 0u;
+        missing |= (counts && (last_us + hold_us >= t_us)) ? (1u << bit) : 0;
     }
     why->lacking = (uint16_t)missing;
     why->missing = why->lacking;

@@ -8,7 +8,7 @@ void why_intruder_start(why_t *why) {
     why->foreign = why_no_evidence();
     why->status_id = why_no_evidence();
     why->other_set = why_no_evidence();
-    for (size_t i = 0u; i < (size_t)AGV_COMMAND_COUNT; i++) {
+    for (size_t i = 0; i < AGV_COMMAND_COUNT; i++) {
         why->too_fast[i].good = why_no_evidence();
         why->too_fast[i].first = why_no_evidence();
     }
@@ -16,7 +16,7 @@ void why_intruder_start(why_t *why) {
 
 /** A data frame with an 11-bit identifier, of any length and format. */
 static bool is_data_frame(const hal_can_frame_t *frame) {
-    return (frame->flags & (HAL_CAN_EXTENDED | HAL_CAN_REMOTE | HAL_CAN_ERROR)) == 0u;
+    return (frame->flags & (HAL_CAN_EXTENDED | HAL_CAN_REMOTE | HAL_CAN_ERROR)) == 0;
 }
 
 static uint64_t event_hold_us(const why_t *why) {
@@ -36,7 +36,7 @@ static void follow_other_set(why_t *why, const why_evidence_t *frame) {
     const uint32_t other_set = (uint32_t)AGV_ID_SET_TABLE - why->config.id_set;
     const agv_message_t message = (agv_message_t)agv_message_from_id(frame->frame.id, other_set);
     const bool moved = agv_message_id(message, AGV_ID_SET_HEADING) != agv_message_id(message, AGV_ID_SET_TABLE);
-    if ((message == AGV_MSG_NONE) || !moved || (frame->frame.flags != 0u) || (frame->frame.length != AGV_DLC)) {
+    if ((message == AGV_MSG_NONE) || !moved || (frame->frame.flags != 0) || (frame->frame.length != AGV_DLC)) {
         return;
     }
     const uint64_t own_us = why->messages[message].last_us;
@@ -63,7 +63,7 @@ void why_intruder_frame(why_t *why, const why_evidence_t *frame) {
         }
     } else if (message == AGV_MSG_NONE) {
         follow_other_set(why, frame);
-        if ((why->config.status_frame_id != 0u) && (frame->frame.id == why->config.status_frame_id) &&
+        if ((why->config.status_frame_id != 0) && (frame->frame.id == why->config.status_frame_id) &&
             (frame->side == HAL_CAN_VEHICLE)) {
             why->status_id = *frame;
         }
@@ -73,7 +73,7 @@ void why_intruder_frame(why_t *why, const why_evidence_t *frame) {
 }
 
 void why_intruder_command(why_t *why, agv_message_t command, const why_evidence_t *frame) {
-    const why_evidence_t *before = why_history(&why->messages[command], 1u);
+    const why_evidence_t *before = why_history(&why->messages[command], 1);
     why_tracker_t *score = &why->too_fast[command];
     if (!agv_value_is_valid(command, frame->frame.data) && why->engagement.engaged) {
         why->bad_command = *frame;
@@ -82,14 +82,14 @@ void why_intruder_command(why_t *why, agv_message_t command, const why_evidence_
         return;
     }
     const uint64_t gap_us = frame->t_us - before->t_us;
-    const uint64_t half_us = ((uint64_t)agv_message_cycle_ms(command) * US_PER_MS) / 2u;
+    const uint64_t half_us = ((uint64_t)agv_message_cycle_ms(command) * US_PER_MS) / 2;
     const uint64_t silence_us =
-        ((uint64_t)agv_config_get(&why->config, message_deadline_setting(command)) + 1u) * US_PER_MS;
+        ((uint64_t)agv_config_get(&why->config, message_deadline_setting(command)) + 1) * US_PER_MS;
     if (gap_us >= silence_us) {
-        score->value = 0u;
+        score->value = 0;
         score->bad = false;
     } else {
         const why_score_frames_t seen = {frame, before};
-        why_score(score, gap_us < half_us, why->config.command_too_fast_gaps, 0u, &seen);
+        why_score(score, gap_us < half_us, why->config.command_too_fast_gaps, 0, &seen);
     }
 }

@@ -21,15 +21,15 @@ static json_t *id_or_null(uint32_t id) {
 
 static json_t *data_of(const hal_can_frame_t *frame) {
     char text[DATA_SIZE] = "";
-    for (size_t i = 0u; (i < frame->length) && (i < sizeof frame->data); i++) {
-        (void)snprintf(&text[2u * i], 3u, "%02X", frame->data[i]);
+    for (size_t i = 0; (i < frame->length) && (i < sizeof frame->data); i++) {
+        (void)snprintf(&text[2 * i], 3, "%02X", frame->data[i]);
     }
     return json_string(text);
 }
 
 static json_t *evidence_json(const why_trip_t *trip, const why_names_t *names) {
     json_t *list = json_array();
-    for (size_t i = 0u; i < trip->evidence_count; i++) {
+    for (size_t i = 0; i < trip->evidence_count; i++) {
         const why_evidence_t *evidence = &trip->evidence[i];
         char id[CANDUMP_ID_SIZE];
         json_t *object = json_object();
@@ -65,15 +65,15 @@ static json_t *trip_of(const why_trip_t *trip, const why_names_t *names) {
 static json_t *not_supervised(const why_t *why, const why_names_t *names) {
     json_t *words = json_array();
     const bool is_late = why_left_init_late(why);
-    const uint16_t missing = is_late ? why_missing(why) : 0u;
-    if (is_late && (missing == 0u)) {
+    const uint16_t missing = is_late ? why_missing(why) : 0;
+    if (is_late && (missing == 0)) {
         json_add(words, json_string("init"));
     }
     if (names->goes_back) {
         json_add(words, json_string("time_stamps"));
     }
-    for (uint8_t bit = 0u; agv_missing_name(bit) != NULL; bit++) {
-        if (((missing >> bit) & 1u) != 0u) {
+    for (uint8_t bit = 0; agv_missing_name(bit) != NULL; bit++) {
+        if (((missing >> bit) & 1) != 0) {
             json_add(words, json_string(agv_missing_name(bit)));
         }
     }
@@ -83,7 +83,7 @@ static json_t *not_supervised(const why_t *why, const why_names_t *names) {
 json_t *why_json(const why_t *why, const why_names_t *names) {
     json_t *object = json_object();
     json_t *trips = json_array();
-    for (size_t i = 0u; i < why_trip_count(why); i++) {
+    for (size_t i = 0; i < why_trip_count(why); i++) {
         json_add(trips, trip_of(why_trip(why, i), names));
     }
     json_put(object, "log", json_text(names->log));

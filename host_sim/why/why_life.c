@@ -3,7 +3,7 @@
 #include "why/why_internal.h"
 
 void why_life_start(why_t *why) {
-    for (size_t i = 0u; i < (size_t)AGV_MSG_COUNT; i++) {
+    for (size_t i = 0; i < AGV_MSG_COUNT; i++) {
         why_message_t *message = &why->messages[i];
         message->last_us = WHY_NEVER;
         message->beat_us = WHY_NEVER;
@@ -14,17 +14,17 @@ void why_life_start(why_t *why) {
 
 /** The usual time between two: it follows a shorter one at once, a longer one slowly. */
 static uint64_t usual(uint64_t usual_us, uint64_t gap_us) {
-    return ((usual_us == 0u) || (gap_us < usual_us)) ? gap_us : (usual_us + ((gap_us - usual_us) / 8u));
+    return ((usual_us == 0) || (gap_us < usual_us)) ? gap_us : (usual_us + ((gap_us - usual_us) / 8));
 }
 
 static void beat(why_message_t *message, const why_evidence_t *frame) {
-    message->usual_us = (message->beat_us != WHY_NEVER) ? usual(message->usual_us, frame->t_us - message->beat_us) : 0u;
+    message->usual_us = (message->beat_us != WHY_NEVER) ? usual(message->usual_us, frame->t_us - message->beat_us) : 0;
     message->beat_us = frame->t_us;
     message->beat = *frame;
     message->repeats = false;
     message->steps = false;
     message->first_repeat = why_no_evidence();
-    message->refused.count = 0u;
+    message->refused.count = 0;
 }
 
 static void follow_counter(why_t *why, agv_message_t number, const why_evidence_t *frame) {
@@ -52,7 +52,7 @@ void why_life_refuse(why_t *why, agv_message_t number, const why_evidence_t *fra
         return;
     }
     why_refused_t *refused = &why->messages[number].refused;
-    refused->first = (refused->count == 0u) ? *frame : refused->first;
+    refused->first = (refused->count == 0) ? *frame : refused->first;
     refused->count++;
 }
 
@@ -65,7 +65,7 @@ void why_life_frame(why_t *why, agv_message_t number, const why_evidence_t *fram
     } else {
         beat(message, frame);
     }
-    message->history[message->count % (uint32_t)WHY_HISTORY] = *frame;
+    message->history[message->count % WHY_HISTORY] = *frame;
     message->count++;
     message->last_us = frame->t_us;
 }

@@ -19,8 +19,8 @@ static uint64_t counts_from(const why_t *why, agv_message_t message) {
 
 /** A silence up to this time is usual: for the protocol, or for this sender. */
 static uint64_t usual_us(const why_t *why, agv_message_t message) {
-    const uint64_t two_cycles_us = 2u * (uint64_t)agv_message_cycle_ms(message) * US_PER_MS;
-    const uint64_t sender_us = why->messages[message].usual_us * 3u / 2u;
+    const uint64_t two_cycles_us = 2 * (uint64_t)agv_message_cycle_ms(message) * US_PER_MS;
+    const uint64_t sender_us = why->messages[message].usual_us * 3 / 2;
     return (sender_us > two_cycles_us) ? sender_us : two_cycles_us;
 }
 
@@ -32,7 +32,7 @@ static bool add_silence(text_t *text, const why_t *why, agv_fault_t fault) {
     const why_row_t *row = why_row(fault);
     const why_message_t *message = &why->messages[row->message];
     const uint64_t from_us = counts_from(why, row->message);
-    const uint64_t age_us = (from_us != WHY_NEVER) ? why->now_us - from_us : 0u;
+    const uint64_t age_us = (from_us != WHY_NEVER) ? why->now_us - from_us : 0;
     const bool stuck = message->repeats;
     if ((age_us <= usual_us(why, row->message)) || (stuck != (row->kind == WHY_STUCK))) {
         return false;
@@ -48,7 +48,7 @@ static bool add_silence(text_t *text, const why_t *why, agv_fault_t fault) {
 
 static bool add_tracked(text_t *text, const why_t *why, agv_fault_t fault) {
     const why_tracker_t *tracker = &why->trackers[fault];
-    if ((tracker->value == 0u) || !tracker->bad) {
+    if ((tracker->value == 0) || !tracker->bad) {
         return false;
     }
     text_add(text, "%s had begun at ", agv_fault_name(fault));
@@ -58,7 +58,7 @@ static bool add_tracked(text_t *text, const why_t *why, agv_fault_t fault) {
 
 bool why_words_pending(text_t *text, const why_t *why, agv_fault_t fault) {
     const why_kind_t kind = why_row(fault)->kind;
-    const bool decided = agv_state_is_latched((agv_state_t)why->state) || (why->state == (uint8_t)AGV_STATE_INIT);
+    const bool decided = agv_state_is_latched((agv_state_t)why->state) || (why->state == AGV_STATE_INIT);
     if (decided || is_active(why, fault)) {
         return false;
     }

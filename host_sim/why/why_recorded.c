@@ -8,11 +8,11 @@
 #include "why/why_internal.h"
 
 static void before(why_trip_t *trip, uint64_t lasted_us) {
-    trip->cause_us = (trip->t_us > lasted_us) ? trip->t_us - lasted_us : 0u;
+    trip->cause_us = (trip->t_us > lasted_us) ? trip->t_us - lasted_us : 0;
 }
 
 static uint64_t recorded_limit_us(const why_trip_t *trip) {
-    return (trip->limit != WHY_NO_LIMIT) ? (uint64_t)trip->limit * US_PER_MS : 0u;
+    return (trip->limit != WHY_NO_LIMIT) ? (uint64_t)trip->limit * US_PER_MS : 0;
 }
 
 static uint64_t cycle_us(const why_trip_t *trip) {
@@ -20,7 +20,7 @@ static uint64_t cycle_us(const why_trip_t *trip) {
 }
 
 static bool is_seen(const agv_event_t *event, agv_message_t message) {
-    return (message != AGV_MSG_NONE) && (((event->seen >> (uint32_t)message) & 1u) != 0u);
+    return (message != AGV_MSG_NONE) && (((event->seen >> (uint32_t)message) & 1) != 0);
 }
 
 /**
@@ -28,7 +28,7 @@ static bool is_seen(const agv_event_t *event, agv_message_t message) {
  * it is engaged, before it is ACTIVE. Else it is known when it came last only if it was ACTIVE already.
  */
 static void explain_silent_command(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
-    const bool is_active = event->a != (uint8_t)AGV_STATE_STANDBY;
+    const bool is_active = event->a != AGV_STATE_STANDBY;
     const uint64_t engaged_us = why->engagement.began_us;
     if (!is_active && (trip->message == AGV_MSG_TURN_SIGNAL_COMMAND)) {
         trip->cause_us = trip->t_us;
@@ -61,7 +61,7 @@ static void recorded_silence(const why_t *why, const agv_event_t *event, why_tri
 }
 
 static void recorded_value(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
-    for (uint32_t command = 0u; command < AGV_COMMAND_COUNT; command++) {
+    for (uint32_t command = 0; command < AGV_COMMAND_COUNT; command++) {
         if (is_seen(event, (agv_message_t)command) && !agv_value_is_valid(command, event->frames[command])) {
             trip->message = (agv_message_t)command;
             trip->id = why->ids.of[command];
@@ -72,7 +72,7 @@ static void recorded_value(const why_t *why, const agv_event_t *event, why_trip_
 
 static void recorded_vehicle(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
     const uint32_t flags = event->frames[AGV_MSG_VEHICLE_STATUS][6];
-    if ((trip->reason == AGV_FAULT_SAFE_STATE_UNCONFIRMED) && ((flags & AGV_VCU_FLAG_AUTOPILOT) == 0u)) {
+    if ((trip->reason == AGV_FAULT_SAFE_STATE_UNCONFIRMED) && ((flags & AGV_VCU_FLAG_AUTOPILOT) == 0)) {
         trip->message = AGV_MSG_GEAR_STATUS;
         trip->id = why->ids.of[AGV_MSG_GEAR_STATUS];
         trip->limit = why->config.park_confirm_timeout_ms;
@@ -92,7 +92,7 @@ static void explain(const why_t *why, const agv_event_t *event, why_trip_t *trip
         break;
     case WHY_SCORE:
         trip->at_the_latest = true;
-        before(trip, ((uint64_t)trip->limit - 1u) * cycle_us(trip));
+        before(trip, ((uint64_t)trip->limit - 1) * cycle_us(trip));
         break;
     case WHY_VALUE:
         recorded_value(why, event, trip);
@@ -130,7 +130,7 @@ static void show_payload(const why_t *why, const agv_event_t *event, why_trip_t 
     why_evidence_t evidence = {.t_us = t_us, .side = from_ai ? HAL_CAN_AI : HAL_CAN_VEHICLE};
     evidence.frame.id = why->ids.of[message];
     evidence.frame.length = (uint8_t)AGV_DLC;
-    for (size_t i = 0u; i < (size_t)AGV_DLC; i++) {
+    for (size_t i = 0; i < AGV_DLC; i++) {
         evidence.frame.data[i] = event->frames[message][i];
     }
     if (t_us == trip->cause_us) {

@@ -25,7 +25,7 @@ enum {
 #undef WHY
     WHY_ROWS
 };
-_Static_assert((int)WHY_ROWS == (int)AGV_FAULT_COUNT, "a fault has no row in why_table.def");
+_Static_assert((int)WHY_ROWS == AGV_FAULT_COUNT, "a fault has no row in why_table.def");
 
 const char *why_kind_name(why_kind_t kind) {
     static const char *const names[WHY_KINDS] = {

@@ -40,16 +40,16 @@ static const tracked_t tracked[] = {
 enum { TRACKED_COUNT = sizeof tracked / sizeof tracked[0] };
 
 void why_track_start(why_t *why) {
-    for (size_t i = 0u; i < (size_t)AGV_FAULT_COUNT; i++) {
+    for (size_t i = 0; i < AGV_FAULT_COUNT; i++) {
         why->trackers[i].good = why_no_evidence();
         why->trackers[i].first = why_no_evidence();
     }
 }
 
 void why_track_engage(why_t *why) {
-    for (size_t i = 0u; i < (size_t)TRACKED_COUNT; i++) {
+    for (size_t i = 0; i < TRACKED_COUNT; i++) {
         if (tracked[i].judged) {
-            why->trackers[tracked[i].fault].value = 0u;
+            why->trackers[tracked[i].fault].value = 0;
         }
     }
 }
@@ -61,8 +61,8 @@ static void note_first(why_tracker_t *tracker, const why_evidence_t *frame, cons
 }
 
 void why_score(why_tracker_t *tracker, bool bad, uint32_t frames, uint64_t from_us, const why_score_frames_t *seen) {
-    const uint64_t full = 2u * (uint64_t)frames;
-    if (bad && (tracker->value == 0u)) {
+    const uint64_t full = 2 * (uint64_t)frames;
+    if (bad && (tracker->value == 0)) {
         tracker->is_old = tracker->bad && (tracker->first.t_us < from_us);
         if (!tracker->bad) {
             note_first(tracker, seen->frame, seen->before);
@@ -72,14 +72,14 @@ void why_score(why_tracker_t *tracker, bool bad, uint32_t frames, uint64_t from_
             /* it began after that time */
         }
         tracker->began_us = tracker->is_old ? from_us : tracker->first.t_us;
-        tracker->bad_frames = 0u;
+        tracker->bad_frames = 0;
         tracker->is_mixed = false;
     }
     if (bad) {
         tracker->bad_frames++;
-        tracker->value = (tracker->value + 2u < full) ? tracker->value + 2u : full;
+        tracker->value = (tracker->value + 2 < full) ? tracker->value + 2 : full;
     } else {
-        tracker->value = ((tracker->value > 1u) && (frames > 1u)) ? tracker->value - 1u : 0u;
+        tracker->value = ((tracker->value > 1) && (frames > 1)) ? tracker->value - 1 : 0;
     }
     tracker->bad = bad;
 }
@@ -87,9 +87,9 @@ void why_score(why_tracker_t *tracker, bool bad, uint32_t frames, uint64_t from_
 static bool is_bad(const tracked_t *row, const why_row_t *what, const uint8_t *data) {
     switch (row->condition) {
     case BIT:
-        return (data[what->byte] & what->mask) != 0u;
+        return (data[what->byte] & what->mask) != 0;
     case EPS_MODE:
-        return data[3] != (uint8_t)AGV_EPS_MODE_ANGLE;
+        return data[3] != AGV_EPS_MODE_ANGLE;
     default:
         return !agv_value_is_valid(what->message, data);
     }
@@ -102,7 +102,7 @@ static void follow(why_t *why, const tracked_t *row, agv_message_t message, cons
         return;
     }
     const bool bad = is_bad(row, what, frame->frame.data);
-    if (!bad && (tracker->value == 0u)) {
+    if (!bad && (tracker->value == 0)) {
         tracker->bad = false;
         return;
     }
@@ -114,8 +114,8 @@ static void follow(why_t *why, const tracked_t *row, agv_message_t message, cons
         tracker->bad = bad;
         return;
     }
-    const uint32_t frames = (what->setting != WHY_NO_SETTING) ? agv_config_get(&why->config, what->setting) : 1u;
-    why_score(tracker, bad, frames, row->judged ? why->engagement.began_us : 0u, &seen);
+    const uint32_t frames = (what->setting != WHY_NO_SETTING) ? agv_config_get(&why->config, what->setting) : 1;
+    why_score(tracker, bad, frames, row->judged ? why->engagement.began_us : 0, &seen);
     const bool is_other = (row->condition == EPS_MODE) && (frame->frame.data[3] != tracker->first.frame.data[3]);
     tracker->is_mixed = tracker->is_mixed || (bad && is_other);
 }
@@ -125,7 +125,7 @@ void why_track_frame(why_t *why, agv_message_t message, const why_evidence_t *fr
         why_intruder_command(why, message, frame);
         return;
     }
-    for (size_t i = 0u; i < (size_t)TRACKED_COUNT; i++) {
+    for (size_t i = 0; i < TRACKED_COUNT; i++) {
         follow(why, &tracked[i], message, frame);
     }
 }
@@ -138,5 +138,5 @@ static agv_fault_t shared(agv_fault_t fault) {
 
 const why_tracker_t *why_tracker(const why_t *why, agv_fault_t fault) {
     const why_tracker_t *tracker = &why->trackers[shared(fault)];
-    return (tracker->value != 0u) ? tracker : NULL;
+    return (tracker->value != 0) ? tracker : NULL;
 }

@@ -150,7 +150,7 @@ static void add_since(text_t *text, const char *words, uint64_t t_us) {
 void why_words_refused(text_t *text, const why_trip_t *trip) {
     const hal_can_frame_t *frame = &trip->refused.first.frame;
     const unsigned count = (unsigned)trip->refused.count;
-    const bool is_other_form = !why_was_withheld(trip) && (frame->flags != 0u);
+    const bool is_other_form = !why_was_withheld(trip) && (frame->flags != 0);
     text_add(text, "%u %s%s came", count, is_other_form ? message_form(frame->flags) : "frame", words_plural(count));
     if (why_was_withheld(trip)) {
         text_add(text, " while the VCU did not report autopilot");
@@ -176,7 +176,7 @@ static void say_silence(text_t *text, const why_t *why, const why_trip_t *trip) 
     } else {
         /* that it was never heard says it; a flight recorder does not know */
     }
-    if (trip->refused.count > 0u) {
+    if (trip->refused.count > 0) {
         text_add(text, "; ");
         why_words_refused(text, trip);
     }
@@ -189,8 +189,8 @@ static void add_payload(text_t *text, const why_trip_t *trip) {
         return;
     }
     text_add(text, " [");
-    for (size_t i = 0u; (i < frame->length) && (i < sizeof frame->data); i++) {
-        text_add(text, "%s%02X", (i > 0u) ? " " : "", frame->data[i]);
+    for (size_t i = 0; (i < frame->length) && (i < sizeof frame->data); i++) {
+        text_add(text, "%s%02X", (i > 0) ? " " : "", frame->data[i]);
     }
     text_add(text, "]");
 }
@@ -211,7 +211,7 @@ static void say_bit(text_t *text, const why_trip_t *trip) {
 
 /** Frames that were not bad may have come between them: then they are more than the limit. */
 static int64_t bad_frames(const why_trip_t *trip) {
-    return (trip->bad_frames != 0u) ? (int64_t)trip->bad_frames : trip->limit;
+    return (trip->bad_frames != 0) ? (int64_t)trip->bad_frames : trip->limit;
 }
 
 static void say_score(text_t *text, const why_t *why, const why_trip_t *trip) {
@@ -234,7 +234,7 @@ static void say_score(text_t *text, const why_t *why, const why_trip_t *trip) {
 
 static void say_value(text_t *text, const why_trip_t *trip) {
     const hal_can_frame_t *bad = &trip->bad.frame;
-    const bool malformed = (trip->bad.t_us != WHY_NEVER) && ((bad->length != AGV_DLC) || (bad->flags != 0u));
+    const bool malformed = (trip->bad.t_us != WHY_NEVER) && ((bad->length != AGV_DLC) || (bad->flags != 0));
     if (trip->id == WHY_NO_ID) {
         text_add(text, "had an invalid value, a wrong length or a wrong format"); /* a recorder has values only */
     } else {
@@ -314,7 +314,7 @@ void why_words_cause(text_t *text, const why_t *why, const why_trip_t *trip) {
 static void say_no_beat(text_t *text, const why_t *why, agv_message_t number) {
     const why_message_t *message = &why->messages[number];
     const unsigned id = why->ids.of[number];
-    if (message->count == 0u) {
+    if (message->count == 0) {
         text_add(text, "%03Xh never received", id);
     } else if (message->repeats) {
         text_add(text,
@@ -334,7 +334,7 @@ static void say_no_manual(text_t *text, const why_t *why) {
         text_add(text, "%03Xh never received", id);
         return;
     }
-    const char *mode = (bits == 0u)                       ? "neither mode"
+    const char *mode = (bits == 0)                        ? "neither mode"
                        : (bits == AGV_VCU_FLAG_MANUAL)    ? "manual only part of the time"
                        : (bits == AGV_VCU_FLAG_AUTOPILOT) ? "autopilot"
                                                           : "both modes";
@@ -344,13 +344,13 @@ static void say_no_manual(text_t *text, const why_t *why) {
 /** Name the messages that INIT waits for, apart from the two that have to beat. */
 static void say_no_messages(text_t *text, const why_t *why, bool heard) {
     const char *between = "";
-    for (int i = (int)AGV_COMMAND_COUNT; i < (int)AGV_MSG_COUNT; i++) {
+    for (int i = (int)AGV_COMMAND_COUNT; i < AGV_MSG_COUNT; i++) {
         const why_message_t *message = &why->messages[i];
-        const uint64_t age_us = why->now_us - ((message->count > 0u) ? message->last_us : 0u);
+        const uint64_t age_us = why->now_us - ((message->count > 0) ? message->last_us : 0);
         const bool late =
             age_us > (uint64_t)agv_config_get(&why->config, message_deadline_setting((uint32_t)i)) * US_PER_MS;
         const bool counts = message_counter_at((uint32_t)i) == MESSAGE_NO_COUNTER;
-        if (counts && (heard == (message->count > 0u)) && (!heard || late)) {
+        if (counts && (heard == (message->count > 0)) && (!heard || late)) {
             text_add(text, "%s%03Xh", between, why->ids.of[i]);
             between = ", ";
         }
@@ -362,7 +362,7 @@ static void say_no_messages(text_t *text, const why_t *why, bool heard) {
 
 static void say_trip_causes(text_t *text, const why_t *why) {
     const char *between = "";
-    for (size_t i = 0u; i < why->fault_count; i++) {
+    for (size_t i = 0; i < why->fault_count; i++) {
         const why_fault_t *fault = &why->faults[why->fault_order[i]];
         if (fault->active && (fault->fault_class == AGV_CLASS_TRIP)) {
             text_add(text, "%s%s", between, agv_fault_name(fault->fault));
@@ -374,7 +374,7 @@ static void say_trip_causes(text_t *text, const why_t *why) {
 /** Where the words of the VCU's heartbeat say it already, nothing. */
 static void say_no_standstill(text_t *text, const why_t *why) {
     const uint32_t wheels = why->ids.of[AGV_MSG_WHEEL_SPEED];
-    if (why->messages[AGV_MSG_WHEEL_SPEED].count == 0u) {
+    if (why->messages[AGV_MSG_WHEEL_SPEED].count == 0) {
         text_add(text, "%03Xh never received", (unsigned)wheels);
     } else if (!why_wheels_are_slow(why)) {
         text_add(text, "%03Xh reports left %d mm/s, right %d mm/s", (unsigned)wheels, (int)why->facts.left_mm_s,
@@ -388,7 +388,7 @@ static void say_no_standstill(text_t *text, const why_t *why) {
 }
 
 void why_words_missing(text_t *text, const why_t *why, uint8_t bit) {
-    if (((why->lacking >> bit) & 1u) == 0u) {
+    if (((why->lacking >> bit) & 1) == 0) {
         return; /* it was there in the end: how it is now says nothing */
     }
     switch (1u << bit) {

@@ -90,11 +90,11 @@ static void end_of_request(void) {
 
 static void next_payload(uint8_t data[AGV_DLC]) {
     const char *word = next_word();
-    if (strlen(word) != 2u * AGV_DLC || strspn(word, "0123456789abcdef") != 2u * AGV_DLC) {
+    if (strlen(word) != 2 * AGV_DLC || strspn(word, "0123456789abcdef") != 2 * AGV_DLC) {
         give_up("not 16 hex digits");
     }
     for (size_t i = 0; i < AGV_DLC; i++) {
-        const char digits[3] = {word[2u * i], word[2u * i + 1u], '\0'};
+        const char digits[3] = {word[2 * i], word[2 * i + 1], '\0'};
         data[i] = (uint8_t)strtoul(digits, NULL, 16);
     }
 }

@@ -53,7 +53,7 @@ static void print_frame(run_t *run) {
 }
 
 static void send_due(run_t *run) {
-    for (unsigned i = 0; i < (unsigned)TRAFFIC_MESSAGES; i++) {
+    for (unsigned i = 0; i < TRAFFIC_MESSAGES; i++) {
         if (traffic_is_due(&run->traffic[i], run->now_ms)) {
             hal_can_frame_t frame = traffic_next(&run->traffic[i]);
             frame.time_ms = run->now_ms;
@@ -65,7 +65,7 @@ static void send_due(run_t *run) {
 /* An EPS fault that trips, and an AI computer that falls silent. */
 static void fail(run_t *run) {
     run->traffic[M_EPS_STATUS].data[7] = 0x08;
-    for (unsigned i = 0; i < (unsigned)TRAFFIC_COMMANDS; i++) {
+    for (unsigned i = 0; i < TRAFFIC_COMMANDS; i++) {
         run->traffic[i].muted = true;
     }
 }

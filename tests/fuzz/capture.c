@@ -67,10 +67,10 @@ void capture_fail(const char *what, const char *detail) {
 
 void capture_one_line(const char *text) {
     const size_t length = strlen(text);
-    if ((length < 2u) || (text[length - 1u] != '\n')) {
+    if ((length < 2) || (text[length - 1] != '\n')) {
         capture_fail("no line says what is wrong", text);
     }
-    for (size_t i = 0; i < length - 1u; i++) {
+    for (size_t i = 0; i < length - 1; i++) {
         if (((unsigned char)text[i] < 0x20u) || (text[i] == 0x7F)) {
             capture_fail("more than a line, or a control character", text);
         }
@@ -84,8 +84,8 @@ size_t capture_line(const char *text, const char *path, size_t highest) {
     if ((strncmp(text, path, length) != 0) || (text[length] != ':')) {
         capture_fail("the file is not named", text);
     }
-    const unsigned long line = strtoul(&text[length + 1u], &end, 10);
-    if ((line == 0u) || (line > highest) || (end[0] != ':') || (end[1] != ' ') || (end[2] == '\n')) {
+    const unsigned long line = strtoul(&text[length + 1], &end, 10);
+    if ((line == 0) || (line > highest) || (end[0] != ':') || (end[1] != ' ') || (end[2] == '\n')) {
         capture_fail("no line of the file is named, or not what is wrong", text);
     }
     return line;
@@ -95,7 +95,7 @@ size_t capture_yaml_lines(const uint8_t *data, size_t size) {
     static const char BREAKS[] = "\n\r\x85\xA8\xA9\x28\x29"; /* each byte that may be part of a break */
     size_t lines = 2;
     for (size_t i = 0; i < size; i++) {
-        lines += (memchr(BREAKS, data[i], sizeof BREAKS - 1u) != NULL) ? 1u : 0u;
+        lines += (memchr(BREAKS, data[i], sizeof BREAKS - 1) != NULL) ? 1 : 0;
     }
     return lines;
 }

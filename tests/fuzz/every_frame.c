@@ -84,7 +84,7 @@ static bool is_status(uint32_t id) {
 
 /* Whether a VCU may obey the frame: data frames of any length, FD too. */
 static bool is_data_frame(const hal_can_frame_t *frame) {
-    return (frame->flags & (HAL_CAN_EXTENDED | HAL_CAN_REMOTE | HAL_CAN_ERROR)) == 0u;
+    return (frame->flags & (HAL_CAN_EXTENDED | HAL_CAN_REMOTE | HAL_CAN_ERROR)) == 0;
 }
 
 /* Incomplete messages that have an effect: commands of any length, on the wrong side (SUP-6) or while engaged (SUP-5),
@@ -98,14 +98,14 @@ static bool is_reported(hal_can_side_t side, const hal_can_frame_t *frame, agv_s
     if (is_command(frame->id)) {
         return engaged || (gateway && (side == HAL_CAN_VEHICLE));
     }
-    return (side == HAL_CAN_VEHICLE) && (frame->id == testbed.rules.oracle.own_status_id) && (frame->id != 0u);
+    return (side == HAL_CAN_VEHICLE) && (frame->id == testbed.rules.oracle.own_status_id) && (frame->id != 0);
 }
 
 /* Whether the frame is a complete message on a side where it has an effect. A command on the wrong side is an
  * intrusion. */
 static bool says_something(hal_can_side_t side, const hal_can_frame_t *frame) {
     const bool gateway = testbed.rules.oracle.gateway;
-    if ((frame->flags != 0u) || (frame->length != 8u) || (!gateway && (side == HAL_CAN_AI))) {
+    if ((frame->flags != 0) || (frame->length != 8) || (!gateway && (side == HAL_CAN_AI))) {
         return false;
     }
     return is_command(frame->id) || ((side == HAL_CAN_VEHICLE) && is_status(frame->id));
@@ -128,13 +128,13 @@ static void try_frame(const testbed_state_t *kept, const trace_t *without, hal_c
     testbed_jump(0);
     ticks(speaks || answered ? TICKS : 0);
     if (speaks) {
-        tripped += ((without->state != AGV_STATE_TRIPPED) && (look().state == AGV_STATE_TRIPPED)) ? 1u : 0u;
+        tripped += ((without->state != AGV_STATE_TRIPPED) && (look().state == AGV_STATE_TRIPPED)) ? 1 : 0;
         return;
     }
     const trace_t with = look();
     if (answered) {
         testbed_restore(kept);
-        ticks(TICKS + 1u);
+        ticks(TICKS + 1);
     }
     const trace_t compared = answered ? look() : *without;
     if (!is_same(&compared, &with, answered)) {
@@ -148,11 +148,11 @@ static void try_id(const testbed_state_t *kept, const trace_t *without, uint32_t
         const uint8_t length = LENGTH_OF[i % LENGTHS];
         const uint8_t *pattern = PATTERN[(i / LENGTHS) % payloads];
         const hal_can_side_t side = (hal_can_side_t)(i / ((unsigned)LENGTHS * payloads));
-        hal_can_frame_t frame = {.id = id, .length = length, .flags = (length > 9u) ? HAL_CAN_FD : 0u};
-        memcpy(frame.data, pattern, (length < 8u) ? length : 8u);
+        hal_can_frame_t frame = {.id = id, .length = length, .flags = (length > 9) ? HAL_CAN_FD : 0};
+        memcpy(frame.data, pattern, (length < 8) ? length : 8);
         try_frame(kept, without, side, &frame);
     }
-    for (unsigned kind = 1; kind < (unsigned)KINDS; kind++) {
+    for (unsigned kind = 1; kind < KINDS; kind++) {
         hal_can_frame_t frame = {.id = id, .length = 8, .flags = KIND[kind]};
         memcpy(frame.data, PATTERN[1], 8);
         try_frame(kept, without, HAL_CAN_VEHICLE, &frame);
@@ -174,16 +174,16 @@ static void try_state(unsigned variant, unsigned state, unsigned payloads) {
 
 int main(int argc, char **argv) {
     const unsigned long payloads = (argc > 1) ? strtoul(argv[1], NULL, 10) : PATTERNS;
-    if ((payloads == 0u) || (payloads > PATTERNS)) {
+    if ((payloads == 0) || (payloads > PATTERNS)) {
         (void)fprintf(stderr, "usage: every_frame [PAYLOADS]\n");
         return 2;
     }
-    for (unsigned variant = 0; variant < (unsigned)TESTBED_VARIANTS; variant++) {
-        for (unsigned state = 0; state < (unsigned)TESTBED_STATES; state++) {
+    for (unsigned variant = 0; variant < TESTBED_VARIANTS; variant++) {
+        for (unsigned state = 0; state < TESTBED_STATES; state++) {
             try_state(variant, state, (unsigned)payloads);
         }
     }
     (void)printf("%llu frames: all identifiers, lengths and sides; %llu of them left no trace, %llu tripped\n",
                  (unsigned long long)cases, (unsigned long long)without_trace, (unsigned long long)tripped);
-    return (tripped > 0u) ? 0 : 1;
+    return (tripped > 0) ? 0 : 1;
 }

@@ -18,7 +18,7 @@ static bool read_once(const char *path, agv_config_t *config) {
 }
 
 static void check_ranges(const agv_config_t *config) {
-    for (uint16_t i = 0; i < (uint16_t)AGV_SETTING_COUNT; i++) {
+    for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
         const agv_setting_info_t *info = agv_setting_info(i);
         const uint16_t value = agv_config_get(config, i);
         if ((value < info->lowest) || (value > info->highest)) {

@@ -21,12 +21,12 @@ typedef struct {
 /* @return what is wrong with a frame; NULL: nothing */
 static const char *wrong_with(const candump_record_t *record) {
     const hal_can_frame_t *frame = &record->frame;
-    const bool is_standard = (frame->flags & (HAL_CAN_EXTENDED | HAL_CAN_ERROR)) == 0u;
-    const uint32_t longest = ((frame->flags & HAL_CAN_FD) != 0u) ? 64u : 8u;
+    const bool is_standard = (frame->flags & (HAL_CAN_EXTENDED | HAL_CAN_ERROR)) == 0;
+    const uint32_t longest = ((frame->flags & HAL_CAN_FD) != 0) ? 64 : 8;
     if ((frame->id > (is_standard ? 0x7FFu : 0x1FFFFFFFu)) || (frame->length > longest)) {
         return "a frame that no bus has";
     }
-    const bool has_name = (record->interface_length > 0u) && (record->interface_length <= CANDUMP_INTERFACE_MAX);
+    const bool has_name = (record->interface_length > 0) && (record->interface_length <= CANDUMP_INTERFACE_MAX);
     return has_name ? NULL : "an interface without a name";
 }
 
@@ -73,7 +73,7 @@ static uint8_t *pack(const uint8_t *bytes, size_t size, size_t *packed_size) {
     (void)deflateInit2(&stream, 1, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
     const uLong most = deflateBound(&stream, (uLong)size);
     uint8_t *packed = malloc(most);
-    uint8_t *copy = malloc(size + 1u);
+    uint8_t *copy = malloc(size + 1);
     memcpy(copy, bytes, size);
     stream.next_in = copy;
     stream.avail_in = (uInt)size;
@@ -88,9 +88,9 @@ static uint8_t *pack(const uint8_t *bytes, size_t size, size_t *packed_size) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     input_t input = {.at = data, .left = size};
-    const bool skip = (input_byte(&input) & 1u) != 0u;
+    const bool skip = (input_byte(&input) & 1) != 0;
     const outcome_t plain = read_log(input.at, input.left, skip);
-    const bool is_packed = (input.left >= 3u) && (memcmp(input.at, "\x1F\x8B\x08", 3) == 0);
+    const bool is_packed = (input.left >= 3) && (memcmp(input.at, "\x1F\x8B\x08", 3) == 0);
     if (is_packed) {
         return 0; /* compressed twice is not read */
     }

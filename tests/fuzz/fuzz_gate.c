@@ -17,22 +17,22 @@ static const uint8_t STATES[5] = {AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_STATE_A
 static void read_config(input_t *input, agv_config_t *config) {
     const uint8_t bits = input_byte(input);
     agv_config_defaults(config);
-    config->topology = bits & 1u;
-    config->id_set = (bits >> 1u) & 1u;
-    config->gateway_in_manual = (bits >> 2u) & 1u;
-    config->throttle_ceiling_pct = ((bits & 8u) != 0u) ? (uint16_t)(input_byte(input) % 101u) : 100u;
-    config->status_frame_id = ((bits & 16u) != 0u) ? 0x700u : 0u;
+    config->topology = bits & 1;
+    config->id_set = (bits >> 1) & 1;
+    config->gateway_in_manual = (bits >> 2) & 1;
+    config->throttle_ceiling_pct = ((bits & 8) != 0) ? (uint16_t)(input_byte(input) % 101) : 100;
+    config->status_frame_id = ((bits & 16) != 0) ? 0x700u : 0;
 }
 
 static void read_frame(input_t *input, hal_can_frame_t *frame) {
     const uint8_t which = input_byte(input);
-    *frame = (hal_can_frame_t){.id = IDS[which & 15u], .length = 8};
-    if ((which & 0x10u) != 0u) {
+    *frame = (hal_can_frame_t){.id = IDS[which & 15], .length = 8};
+    if ((which & 0x10u) != 0) {
         frame->id = input_word(input);
     }
-    if ((which & 0x20u) != 0u) {
-        frame->length = input_byte(input) % 65u;
-        frame->flags = input_byte(input) & 15u;
+    if ((which & 0x20u) != 0) {
+        frame->length = input_byte(input) % 65;
+        frame->flags = input_byte(input) & 15;
     }
     input_bytes(input, frame->data, sizeof frame->data);
 }
@@ -47,13 +47,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     const hal_can_side_t side = (hal_can_side_t)(more & 1u);
     read_config(&input, &config);
     agv_config_ids(&config, &ids);
-    agv_gate_t gate = {.config = &config, .ids = &ids, .state = (state < 200u) ? STATES[state % 5u] : state};
+    agv_gate_t gate = {.config = &config, .ids = &ids, .state = (state < 200) ? STATES[state % 5] : state};
     gate.hold_raw = input_word(&input);
-    gate.hold_check = ((more & 2u) != 0u) ? input_word(&input) : (uint16_t)~gate.hold_raw;
+    gate.hold_check = ((more & 2) != 0) ? input_word(&input) : (uint16_t)~gate.hold_raw;
     read_frame(&input, &frame);
-    if ((more & 4u) != 0u) {
+    if ((more & 4) != 0) {
         frame.data[0] = (uint8_t)gate.hold_raw;
-        frame.data[1] = (uint8_t)(gate.hold_raw >> 8u);
+        frame.data[1] = (uint8_t)(gate.hold_raw >> 8);
     }
     const bool allows = agv_gate_allows(&gate, side, &frame);
     const oracle_t oracle = gate_oracle(&gate);

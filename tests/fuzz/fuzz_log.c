@@ -66,13 +66,13 @@ static char kind_of(const char *line, size_t length) {
 
 static void check_record(const candump_record_t *record) {
     const hal_can_frame_t *frame = &record->frame;
-    const bool is_long = (frame->flags & HAL_CAN_FD) != 0u;
-    const bool is_standard = (frame->flags & (HAL_CAN_EXTENDED | HAL_CAN_ERROR)) == 0u;
+    const bool is_long = (frame->flags & HAL_CAN_FD) != 0;
+    const bool is_standard = (frame->flags & (HAL_CAN_EXTENDED | HAL_CAN_ERROR)) == 0;
     if ((frame->id > (is_standard ? 0x7FFu : 0x1FFFFFFFu)) || (frame->length > (is_long ? 64u : 8u))) {
         capture_fail("a frame that no bus has", log_file->name);
     }
-    for (unsigned i = ((frame->flags & HAL_CAN_REMOTE) != 0u) ? 0u : frame->length; i < 8u; i++) {
-        if (frame->data[i] != 0u) {
+    for (unsigned i = ((frame->flags & HAL_CAN_REMOTE) != 0) ? 0 : frame->length; i < 8; i++) {
+        if (frame->data[i] != 0) {
             capture_fail("bytes beyond the length of a frame", log_file->name);
         }
     }
@@ -80,16 +80,16 @@ static void check_record(const candump_record_t *record) {
 
 /* Only classic data frames, because candump_write() writes no others. */
 static void write_and_read(const candump_record_t *record) {
-    char interface[CANDUMP_INTERFACE_MAX + 1u] = {0};
+    char interface[CANDUMP_INTERFACE_MAX + 1] = {0};
     char *line = malloc(CANDUMP_WRITE_MAX);
     candump_record_t again;
-    if ((record->frame.flags & (uint8_t)~HAL_CAN_EXTENDED) == 0u) {
+    if ((record->frame.flags & (uint8_t)~HAL_CAN_EXTENDED) == 0) {
         memcpy(interface, record->interface, record->interface_length);
         const size_t length = candump_write(line, record->stamp_us, interface, &record->frame);
-        if ((length > CANDUMP_WRITE_MAX) || (line[length - 1u] != '\n')) {
+        if ((length > CANDUMP_WRITE_MAX) || (line[length - 1] != '\n')) {
             capture_fail("written without an end", interface);
         }
-        if ((candump_parse(line, length - 1u, &again) != NULL) || (again.stamp_us != record->stamp_us) ||
+        if ((candump_parse(line, length - 1, &again) != NULL) || (again.stamp_us != record->stamp_us) ||
             (memcmp(&again.frame, &record->frame, sizeof again.frame) != 0) ||
             (again.interface_length != record->interface_length)) {
             capture_fail("written and read it is another frame", interface);
@@ -122,8 +122,8 @@ static size_t walk(const char *text, size_t size, bool skip, uint64_t *bad) {
         const size_t length = (end != NULL) ? (size_t)(end - &text[at]) : (size - at);
         const char kind = kind_of(&text[at], length);
         number++;
-        at += length + 1u;
-        *bad += (kind == 'x') ? 1u : 0u;
+        at += length + 1;
+        *bad += (kind == 'x') ? 1 : 0;
         if ((kind != 'b') && !check_line(kind, number, skip)) {
             return number;
         }
@@ -138,9 +138,9 @@ static const char *with_first_line(const input_t *input, size_t *length) {
     static char *text;
     *length = sizeof first + input->left;
     text = realloc(text, *length);
-    memcpy(text, first, sizeof first - 1u);
-    memcpy(&text[sizeof first - 1u], input->at, input->left);
-    text[*length - 1u] = '\n';
+    memcpy(text, first, sizeof first - 1);
+    memcpy(&text[sizeof first - 1], input->at, input->left);
+    text[*length - 1] = '\n';
     return text;
 }
 
@@ -152,20 +152,20 @@ static bool has_jump(const char *text, size_t size) {
         const char *end = memchr(&text[at], '\n', size - at);
         const size_t length = (end != NULL) ? (size_t)(end - &text[at]) : (size - at);
         if (kind_of(&text[at], length) == 'f') {
-            const unsigned long long now_s = strtoull(&text[at + 1u], NULL, 10);
+            const unsigned long long now_s = strtoull(&text[at + 1], NULL, 10);
             if (now_s >= newest_s + LONGEST_S) {
                 return true;
             }
-            newest_s = ((at == 0u) || (now_s > newest_s)) ? now_s : newest_s;
+            newest_s = ((at == 0) || (now_s > newest_s)) ? now_s : newest_s;
         }
-        at += length + 1u;
+        at += length + 1;
     }
     return false;
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     input_t input = {.at = data, .left = size};
-    const bool skip = (input_byte(&input) & 1u) != 0u;
+    const bool skip = (input_byte(&input) & 1) != 0;
     size_t length = 0;
     const char *text = with_first_line(&input, &length);
     prepare();
@@ -177,14 +177,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     candump_record_t record;
     capture_begin();
     const bool opened = candump_open(log_file, path, skip);
-    const size_t wrong = opened ? walk(text, length, skip, &bad) : 0u;
+    const size_t wrong = opened ? walk(text, length, skip, &bad) : 0;
     const candump_result_t last = candump_next(log_file, &record);
     candump_close(log_file);
     const char *printed = capture_end();
-    if (!opened || (last != ((wrong != 0u) ? CANDUMP_FAILED : CANDUMP_END))) {
+    if (!opened || (last != ((wrong != 0) ? CANDUMP_FAILED : CANDUMP_END))) {
         capture_fail("the log does not end where it ends", printed);
     }
-    if (wrong != 0u) {
+    if (wrong != 0) {
         if (capture_line(printed, path, wrong) != wrong) {
             capture_fail("the wrong line is named", printed);
         }

@@ -29,7 +29,7 @@ static void check_times(const scenario_t *scenario) {
     uint32_t before_ms = 0;
     for (size_t i = 0; i < scenario->step_count; i++) {
         const uint32_t at_ms = scenario->steps[i].at_ms;
-        const bool waits = scenario->steps[i].after.kind != (uint8_t)SCENARIO_FROM_START;
+        const bool waits = scenario->steps[i].after.kind != SCENARIO_FROM_START;
         if ((!waits && (at_ms < before_ms)) || (at_ms > scenario->duration_ms)) {
             capture_fail("a step out of its time", scenario->name);
         }

@@ -21,8 +21,8 @@ static uint32_t crc_by_hand(const uint8_t *bytes, size_t size) {
     uint32_t crc = 0xFFFFFFFFu;
     for (size_t i = 0; i < size; i++) {
         crc ^= bytes[i];
-        for (unsigned bit = 0; bit < 8u; bit++) {
-            crc = (crc >> 1u) ^ (((crc & 1u) != 0u) ? 0xEDB88320u : 0u);
+        for (unsigned bit = 0; bit < 8; bit++) {
+            crc = (crc >> 1) ^ (((crc & 1) != 0) ? 0xEDB88320u : 0);
         }
     }
     return ~crc;
@@ -31,10 +31,10 @@ static uint32_t crc_by_hand(const uint8_t *bytes, size_t size) {
 /* Whether the last line is the correct checksum of all lines before it. */
 static bool ends_in_its_checksum(const char *text, size_t size) {
     char expected[ROOM];
-    if ((size < 15u) || (text[size - 1u] != '\n')) {
+    if ((size < 15) || (text[size - 1] != '\n')) {
         return false;
     }
-    const size_t before = size - 15u; /* "check 1A2B3C4D\n" */
+    const size_t before = size - 15; /* "check 1A2B3C4D\n" */
     (void)snprintf(expected, sizeof expected, "check %08X\n", (unsigned)crc_by_hand((const uint8_t *)text, before));
     return memcmp(&text[before], expected, 15) == 0;
 }
@@ -55,7 +55,7 @@ static void check_start(hal_reset_cause_t cause, sim_store_t *store, agv_recorde
     if (damaged && !invalid) {
         capture_fail("a damaged store was believed", "FSM-7");
     }
-    for (uint32_t i = 1; i <= 20u; i++) {
+    for (uint32_t i = 1; i <= 20; i++) {
         agv_supervisor_tick(&supervisor, &ports, i);
     }
 }
@@ -71,7 +71,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     }
     size_t length = input.left;
     input_bytes(&input, (uint8_t *)text, length);
-    if ((how & 0x80u) != 0u) {
+    if ((how & 0x80u) != 0) {
         length += (size_t)snprintf(&text[length], ROOM, "check %08X\n", (unsigned)crc_by_hand((uint8_t *)text, length));
     }
     const char *path = capture_file((const uint8_t *)text, length);
@@ -81,7 +81,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (!loaded || (printed[0] != '\0')) {
         capture_fail("a file that can be read is a store, or a damaged one", printed);
     }
-    check_start((hal_reset_cause_t)((how & 0x7Fu) % 6u), &store, &recorder, !ends_in_its_checksum(text, length));
+    check_start((hal_reset_cause_t)((how & 0x7Fu) % 6), &store, &recorder, !ends_in_its_checksum(text, length));
     free(text);
     return 0;
 }

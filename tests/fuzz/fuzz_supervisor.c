@@ -26,27 +26,27 @@ static void any_frame(input_t *input, unsigned how) {
     hal_can_frame_t frame = {.length = 8};
     const uint8_t which = input_byte(input);
     int32_t ahead_ms = 0;
-    frame.id = IDS[which & 15u];
-    if ((how & 2u) != 0u) {
-        frame.id = ((uint32_t)which | ((uint32_t)input_byte(input) << 8u)) & 0x7FFu;
+    frame.id = IDS[which & 15];
+    if ((how & 2) != 0) {
+        frame.id = ((uint32_t)which | ((uint32_t)input_byte(input) << 8)) & 0x7FFu;
     }
-    if ((how & 4u) != 0u) {
+    if ((how & 4) != 0) {
         frame.flags = input_byte(input) & 0x0Fu;
-        frame.length = input_byte(input) % 65u;
+        frame.length = input_byte(input) % 65;
     }
-    if ((how & 8u) != 0u) {
+    if ((how & 8) != 0) {
         ahead_ms = (int8_t)input_byte(input);
     }
-    input_bytes(input, frame.data, (frame.length < 8u) ? frame.length : 8u);
-    testbed_frame(((how & 1u) != 0u) ? HAL_CAN_AI : HAL_CAN_VEHICLE, frame, ahead_ms);
+    input_bytes(input, frame.data, (frame.length < 8) ? frame.length : 8);
+    testbed_frame(((how & 1) != 0) ? HAL_CAN_AI : HAL_CAN_VEHICLE, frame, ahead_ms);
 }
 
 static void change_message(input_t *input, unsigned how) {
     traffic_message_t *m = &testbed.traffic[input_byte(input) % (unsigned)TRAFFIC_MESSAGES];
     uint8_t where = 0;
-    switch (how & 3u) {
+    switch (how & 3) {
     case 0:
-        where = (uint8_t)((how >> 2u) | (input_byte(input) & 4u));
+        where = (uint8_t)((how >> 2) | (input_byte(input) & 4));
         m->data[where] = input_byte(input);
         break;
     case 1:
@@ -56,15 +56,15 @@ static void change_message(input_t *input, unsigned how) {
         m->frozen = !m->frozen;
         break;
     default:
-        m->flags = (how >> 2u) == 3u ? input_byte(input) & 15u : 0u;
-        m->length = input_byte(input) % 65u;
+        m->flags = (how >> 2) == 3 ? input_byte(input) & 15 : 0;
+        m->length = input_byte(input) % 65;
         break;
     }
 }
 
 /* The vehicle as a whole. */
 static void change_vehicle(unsigned how) {
-    switch (how & 7u) {
+    switch (how & 7) {
     case 0:
         traffic_heal(testbed.traffic);
         break;
@@ -91,39 +91,39 @@ static void change_vehicle(unsigned how) {
         traffic_mode(testbed.traffic, 0x00);
         break;
     default:
-        testbed.receive_path_dead = (how & 8u) != 0u;
+        testbed.receive_path_dead = (how & 8) != 0;
         break;
     }
 }
 
 static void long_silence(input_t *input, unsigned how) {
     const uint32_t days[4] = {1, 1000, 86400000, 1000000000}; /* ms; a step is less than half of the clock's range */
-    testbed_jump(days[how & 3u] * (1u + (input_byte(input) & 1u)));
+    testbed_jump(days[how & 3] * (1 + (input_byte(input) & 1)));
 }
 
 static void step(input_t *input) {
     const unsigned what = input_byte(input);
-    const unsigned how = what >> 4u;
-    switch (what & 15u) {
+    const unsigned how = what >> 4;
+    switch (what & 15) {
     case 0:
     case 1:
     case 2:
         any_frame(input, how);
         break;
     case 3:
-        testbed_send(input_byte(input) % (unsigned)TRAFFIC_MESSAGES);
+        testbed_send(input_byte(input) % TRAFFIC_MESSAGES);
         break;
     case 4:
         testbed_jump(how);
         break;
     case 5:
-        run(how + 1u);
+        run(how + 1);
         break;
     case 6:
         run(input_byte(input));
         break;
     case 7:
-        run((uint32_t)input_byte(input) * 8u);
+        run((uint32_t)input_byte(input) * 8);
         break;
     case 8:
     case 9:
@@ -135,10 +135,10 @@ static void step(input_t *input) {
         change_vehicle(how);
         break;
     case 13:
-        testbed_disturb((how & 1u) != 0u ? HAL_CAN_AI : HAL_CAN_VEHICLE, how >> 1u, input_byte(input));
+        testbed_disturb((how & 1) != 0 ? HAL_CAN_AI : HAL_CAN_VEHICLE, how >> 1, input_byte(input));
         break;
     case 14:
-        testbed_restart((hal_reset_cause_t)(how % 6u));
+        testbed_restart((hal_reset_cause_t)(how % 6));
         break;
     default:
         long_silence(input, how);
@@ -148,11 +148,11 @@ static void step(input_t *input) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     input_t input = {.at = data, .left = size};
-    const unsigned state = input_byte(&input) % (unsigned)TESTBED_STATES;
-    const unsigned variant = input_byte(&input) % (unsigned)TESTBED_VARIANTS;
+    const unsigned state = input_byte(&input) % TESTBED_STATES;
+    const unsigned variant = input_byte(&input) % TESTBED_VARIANTS;
     testbed_load(variant, state);
     ran_ms = 0;
-    for (unsigned i = 0; (i < STEPS_MAX) && (input.left > 0u); i++) {
+    for (unsigned i = 0; (i < STEPS_MAX) && (input.left > 0); i++) {
         step(&input);
     }
     run(20);

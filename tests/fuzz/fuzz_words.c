@@ -14,9 +14,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     const uint8_t how = input_byte(&input);
     agv_config_t config;
     agv_config_defaults(&config);
-    config.topology = (how >> 1u) & 1u;
-    config.id_set = (how >> 2u) & 1u;
-    char *line = malloc(input.left + 1u);
+    config.topology = (how >> 1) & 1;
+    config.id_set = (how >> 2) & 1;
+    char *line = malloc(input.left + 1);
     vehicle_words_t *words = calloc(1, sizeof *words);
     if ((line == NULL) || (words == NULL)) {
         free(line);
@@ -24,10 +24,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         return 0;
     }
     input_bytes(&input, (uint8_t *)line, input.left);
-    line[size > 0u ? size - 1u : 0u] = '\0';
+    line[size > 0 ? size - 1 : 0] = '\0';
     capture_begin();
     const bool good =
-        ((how & 1u) != 0u) ? vehicle_words_typed(line, &config, words) : vehicle_words_fault(line, &config, words);
+        ((how & 1) != 0) ? vehicle_words_typed(line, &config, words) : vehicle_words_fault(line, &config, words);
     const char *printed = capture_end();
     if (!good) {
         capture_one_line(printed);

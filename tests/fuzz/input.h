@@ -14,7 +14,7 @@ typedef struct {
 } input_t;
 
 static inline uint8_t input_byte(input_t *input) {
-    if (input->left == 0u) {
+    if (input->left == 0) {
         return 0;
     }
     input->left--;
@@ -23,7 +23,7 @@ static inline uint8_t input_byte(input_t *input) {
 
 static inline uint16_t input_word(input_t *input) {
     const unsigned low = input_byte(input);
-    return (uint16_t)(low | ((unsigned)input_byte(input) << 8u));
+    return (uint16_t)(low | ((unsigned)input_byte(input) << 8));
 }
 
 static inline void input_bytes(input_t *input, uint8_t *to, size_t count) {

@@ -19,10 +19,10 @@ static bool run_file(const char *path) {
         return false;
     }
     uint8_t *bytes = malloc(SIZE_MAX_BYTES);
-    const size_t size = (bytes != NULL) ? fread(bytes, 1, SIZE_MAX_BYTES, file) : 0u;
+    const size_t size = (bytes != NULL) ? fread(bytes, 1, SIZE_MAX_BYTES, file) : 0;
     (void)fclose(file);
     /* Allocated with its exact size, so that the sanitizers detect reads beyond it. */
-    uint8_t *exact = malloc((size > 0u) ? size : 1u);
+    uint8_t *exact = malloc((size > 0) ? size : 1);
     if ((bytes == NULL) || (exact == NULL)) {
         exit(2);
     }
@@ -44,7 +44,7 @@ static unsigned run_folder(const char *path) {
     for (const struct dirent *entry = readdir(folder); entry != NULL; entry = readdir(folder)) {
         if (entry->d_name[0] != '.') {
             (void)snprintf(inside, sizeof inside, "%s/%s", path, entry->d_name);
-            count += run_file(inside) ? 1u : 0u;
+            count += run_file(inside) ? 1 : 0;
         }
     }
     (void)closedir(folder);
@@ -59,8 +59,8 @@ int main(int argc, char **argv) {
             perror(argv[i]);
             return 2;
         }
-        count += S_ISDIR(status.st_mode) ? run_folder(argv[i]) : (run_file(argv[i]) ? 1u : 0u);
+        count += S_ISDIR(status.st_mode) ? run_folder(argv[i]) : (run_file(argv[i]) ? 1 : 0);
     }
     (void)printf("%u inputs\n", count);
-    return (count > 0u) ? 0 : 2;
+    return (count > 0) ? 0 : 2;
 }

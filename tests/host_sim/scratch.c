@@ -20,7 +20,7 @@ static int said_fd = -1;
 const char *scratch_path(const char *name) {
     static char paths[4][512];
     static unsigned next;
-    char *path = paths[next++ % 4u];
+    char *path = paths[next++ % 4];
     (void)snprintf(path, sizeof paths[0], "%s/%s", folder, name);
     return path;
 }
@@ -71,7 +71,7 @@ const char *scratch_read(const char *name) {
     FILE *file = fopen(scratch_path(name), "rb");
     size_t size = 0;
     if (file != NULL) {
-        size = fread(content, 1, sizeof content - 1u, file);
+        size = fread(content, 1, sizeof content - 1, file);
         (void)fclose(file);
     }
     content[size] = '\0';
@@ -82,7 +82,7 @@ size_t scratch_count(void) {
     size_t count = 0;
     DIR *all = opendir(folder);
     for (struct dirent *entry = readdir(all); entry != NULL; entry = readdir(all)) {
-        count += (entry->d_name[0] != '.' && strcmp(entry->d_name, SAID) != 0) ? 1u : 0u;
+        count += (entry->d_name[0] != '.' && strcmp(entry->d_name, SAID) != 0) ? 1 : 0;
     }
     (void)closedir(all);
     return count;
@@ -91,7 +91,7 @@ size_t scratch_count(void) {
 const char *scratch_said(void) {
     (void)fflush(stderr);
     (void)lseek(said_fd, 0, SEEK_SET);
-    ssize_t size = read(said_fd, said, sizeof said - 1u);
+    ssize_t size = read(said_fd, said, sizeof said - 1);
     said[size > 0 ? size : 0] = '\0';
     (void)ftruncate(said_fd, 0);
     (void)lseek(said_fd, 0, SEEK_SET);
@@ -102,6 +102,6 @@ const char *scratch_said_line(const char *text) {
     const char *line = scratch_said();
     const char *found = strstr(line, text);
     TEST_ASSERT_NOT_NULL_MESSAGE(found, line);
-    TEST_ASSERT_EQUAL_PTR_MESSAGE(&line[strlen(line) - 1u], strchr(line, '\n'), line);
+    TEST_ASSERT_EQUAL_PTR_MESSAGE(&line[strlen(line) - 1], strchr(line, '\n'), line);
     return found;
 }

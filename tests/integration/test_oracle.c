@@ -60,7 +60,7 @@ static bool allows(bool gateway, agv_state_t state, unsigned row) {
     oracle_heard(&oracle, HAL_CAN_VEHICLE, &AUTOPILOT);
     oracle_heard(&oracle, HAL_CAN_VEHICLE, &ANGLE);
     oracle_sent(&oracle, ROWS[row].side, &ROWS[row].frame, state);
-    return oracle.forbidden == 0u;
+    return oracle.forbidden == 0;
 }
 
 /* Shows: FSM-6, FSM-10, TOP-2 */

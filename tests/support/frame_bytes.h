@@ -20,17 +20,17 @@ static inline bool is_latched(agv_state_t state) {
 }
 
 static inline uint16_t word_at(const uint8_t *low) {
-    return (uint16_t)(low[0] | ((unsigned)low[1] << 8u));
+    return (uint16_t)(low[0] | ((unsigned)low[1] << 8));
 }
 
 static inline bool is_gear(uint8_t gear) {
-    return (gear == 1u) || (gear == 2u) || (gear == 4u) || (gear == 8u);
+    return (gear == 1) || (gear == 2) || (gear == 4) || (gear == 8);
 }
 
 static inline bool is_fast(const uint8_t *data) {
-    const uint32_t raw = word_at(data) | ((uint32_t)word_at(&data[2]) << 16u);
-    const uint32_t amount = (raw < 0x80000000u) ? raw : (0u - raw);
-    return amount >= (uint32_t)SLOW_MM_S;
+    const uint32_t raw = word_at(data) | ((uint32_t)word_at(&data[2]) << 16);
+    const uint32_t amount = (raw < 0x80000000u) ? raw : (0 - raw);
+    return amount >= SLOW_MM_S;
 }
 
 static inline bool in_range(int command, const uint8_t *data) {
@@ -38,9 +38,9 @@ static inline bool in_range(int command, const uint8_t *data) {
     case GEAR:
         return is_gear(data[0]);
     case THROTTLE:
-        return data[0] <= 250u;
+        return data[0] <= 250;
     case STEERING:
-        return word_at(data) <= 18000u;
+        return word_at(data) <= 18000;
     default:
         return true;
     }
@@ -56,16 +56,16 @@ static inline void clear_reserved(int command, uint8_t data[8]) {
 
 /* TOP-1: whether a VCU may obey the frame as a command other than the safe one. */
 static inline bool differs_from_safe(int command, const hal_can_frame_t *frame) {
-    if (frame->length != 8u) {
+    if (frame->length != 8) {
         return true;
     }
     switch (command) {
     case SIGNALS:
         return (frame->data[4] & 0xF0u) != 0x70u;
     case GEAR:
-        return frame->data[0] != 8u;
+        return frame->data[0] != 8;
     default:
-        return frame->data[0] != 0u;
+        return frame->data[0] != 0;
     }
 }
 

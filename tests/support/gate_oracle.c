@@ -10,7 +10,7 @@ oracle_t gate_oracle(const agv_gate_t *gate) {
                        .ending = state == AGV_STATE_STANDBY,
                        .latched = latched,
                        .held = latched && ((unsigned)gate->hold_check + gate->hold_raw == 0xFFFFu) &&
-                               (gate->hold_raw <= 18000u),
+                               (gate->hold_raw <= 18000),
                        .held_raw = gate->hold_raw};
     oracle_configure(&oracle, gate->config);
     return oracle;
@@ -22,6 +22,5 @@ bool gate_oracle_allows(const oracle_t *oracle, const agv_gate_t *gate, hal_can_
     const uint32_t most = gate->config->throttle_ceiling_pct * 250u / 100u;
     const bool throttle = (side == HAL_CAN_VEHICLE) && (frame->id == 0x075u);
     oracle_sent(&judge, side, frame, (agv_state_t)gate->state);
-    return (judge.forbidden == 0u) &&
-           !(throttle && (gate->state == (uint8_t)AGV_STATE_ACTIVE) && (frame->data[0] > most));
+    return (judge.forbidden == 0) && !(throttle && (gate->state == AGV_STATE_ACTIVE) && (frame->data[0] > most));
 }

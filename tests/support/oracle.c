@@ -15,13 +15,13 @@ static bool bytes_are(const hal_can_frame_t *frame, const uint8_t *expected, uns
 
 static bool zeros_from(const hal_can_frame_t *frame, unsigned first) {
     static const uint8_t zeros[8] = {0};
-    return memcmp(&frame->data[first], zeros, 8u - first) == 0;
+    return memcmp(&frame->data[first], zeros, 8 - first) == 0;
 }
 
 void oracle_configure(oracle_t *oracle, const agv_config_t *config) {
-    const bool table = config->id_set == (uint16_t)AGV_ID_SET_TABLE;
-    oracle->gateway = config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
-    oracle->pass_all_in_manual = config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL;
+    const bool table = config->id_set == AGV_ID_SET_TABLE;
+    oracle->gateway = config->topology == AGV_TOPOLOGY_GATEWAY;
+    oracle->pass_all_in_manual = config->gateway_in_manual == AGV_IN_MANUAL_ALL;
     oracle->signal_id = table ? 0x201u : 0x43Fu;
     oracle->vehicle_id = table ? 0x203u : 0x363u;
     oracle->own_status_id = config->status_frame_id;
@@ -32,16 +32,16 @@ void oracle_configure(oracle_t *oracle, const agv_config_t *config) {
 
 void oracle_restart(oracle_t *oracle) {
     oracle->angle_known = false;
-    oracle->angles = 0u;
-    oracle->angle_score = 0u;
+    oracle->angles = 0;
+    oracle->angle_score = 0;
     oracle->angle_unusable = false;
     oracle->held_sent_ms = oracle->now_ms;
     oracle->ticked_ms = oracle->now_ms;
     oracle->latched = false;
     oracle->held = false;
     oracle->manual = false;
-    oracle->mode_bits = 0u;
-    oracle->both_halves = 0u;
+    oracle->mode_bits = 0;
+    oracle->both_halves = 0;
     oracle->ending = false;
     oracle->before = AGV_STATE_INIT;
 }
@@ -71,7 +71,7 @@ enum { EPS_GAP_MS = 45, EPS_STATUS_GAP_MS = 55, EPS_ALARMS = 0x30 };
 
 static bool is_recent(const oracle_t *oracle, uint16_t raw) {
     bool recent = false;
-    for (uint32_t i = 0u; (i < ORACLE_ANGLES) && (i < oracle->angles); i++) {
+    for (uint32_t i = 0; (i < ORACLE_ANGLES) && (i < oracle->angles); i++) {
         recent = recent || ((oracle->recent_raw[i] == raw) && (oracle->now_ms - oracle->recent_ms[i] <= RECENT_MS));
     }
     return recent;
@@ -127,23 +127,23 @@ void oracle_tick(oracle_t *oracle, uint32_t now_ms) {
 
 /* STEERING_ANGLE_INVALID: a bad 067h counts 2, a good one takes 1 off. */
 static void score_angle(oracle_t *oracle, bool bad) {
-    const uint32_t full = 2u * oracle->angle_frames;
+    const uint32_t full = 2 * oracle->angle_frames;
     if (bad) {
-        oracle->angle_score = ((oracle->angle_score + 2u) < full) ? (oracle->angle_score + 2u) : full;
-    } else if ((oracle->angle_score != 0u) && (oracle->angle_frames > 1u)) {
+        oracle->angle_score = ((oracle->angle_score + 2) < full) ? (oracle->angle_score + 2) : full;
+    } else if ((oracle->angle_score != 0) && (oracle->angle_frames > 1)) {
         oracle->angle_score--;
     } else {
-        oracle->angle_score = 0u;
+        oracle->angle_score = 0;
     }
-    oracle->angle_unusable = (oracle->angle_score == full) || (oracle->angle_unusable && (oracle->angle_score != 0u));
+    oracle->angle_unusable = (oracle->angle_score == full) || (oracle->angle_unusable && (oracle->angle_score != 0));
     oracle->held = oracle->held && !oracle->angle_unusable;
 }
 
 /* If no angle is held, the first usable angle after the trip is. */
 static void on_angle(oracle_t *oracle, const hal_can_frame_t *frame) {
     const uint16_t raw = word_at(&frame->data[2]);
-    score_angle(oracle, raw > 18000u);
-    if (raw > 18000u) {
+    score_angle(oracle, raw > 18000);
+    if (raw > 18000) {
         return;
     }
     oracle->angle_known = true;
@@ -163,7 +163,7 @@ static void unfit_if(oracle_t *oracle, bool unfit) {
 
 static void on_eps_counter(oracle_t *oracle, const hal_can_frame_t *frame) {
     const bool silent = (frame->time_ms - oracle->eps_ms) > EPS_GAP_MS;
-    unfit_if(oracle, silent || (frame->data[0] != (uint8_t)(oracle->eps_counter + 1u)));
+    unfit_if(oracle, silent || (frame->data[0] != (uint8_t)(oracle->eps_counter + 1)));
     if (frame->data[0] != oracle->eps_counter) {
         oracle->eps_ms = frame->time_ms;
     }
@@ -173,25 +173,25 @@ static void on_eps_counter(oracle_t *oracle, const hal_can_frame_t *frame) {
 static void on_eps_status(oracle_t *oracle, const hal_can_frame_t *frame) {
     const bool silent = (frame->time_ms - oracle->eps_status_ms) > EPS_STATUS_GAP_MS;
     oracle->eps_status_ms = frame->time_ms;
-    unfit_if(oracle, silent || (frame->data[3] != 1u) || (frame->data[7] != 0u));
+    unfit_if(oracle, silent || (frame->data[3] != 1) || (frame->data[7] != 0));
 }
 
 /* MODE_INVALID: a millisecond without both bits takes half a millisecond off. */
 static void on_both_modes(oracle_t *oracle, bool both, uint32_t time_ms) {
     const uint32_t past_ms = time_ms - oracle->both_since_ms;
-    const uint32_t left = (past_ms < oracle->both_halves) ? (oracle->both_halves - past_ms) : 0u;
+    const uint32_t left = (past_ms < oracle->both_halves) ? (oracle->both_halves - past_ms) : 0;
     if (both && (oracle->mode_bits != 0xC0u)) {
-        oracle->both_halves = (left > 1u) ? left : 0u;
-        oracle->both_since_ms = time_ms - ((oracle->both_halves + 1u) / 2u);
+        oracle->both_halves = (left > 1) ? left : 0;
+        oracle->both_since_ms = time_ms - ((oracle->both_halves + 1) / 2);
     } else if (!both && (oracle->mode_bits == 0xC0u)) {
         const uint32_t spent_ms = (past_ms < oracle->mode_invalid_ms) ? past_ms : oracle->mode_invalid_ms;
-        oracle->both_halves = (2u * spent_ms) - (oracle->both_halves % 2u);
+        oracle->both_halves = (2 * spent_ms) - (oracle->both_halves % 2);
         oracle->both_since_ms = time_ms;
     }
 }
 
 static void on_mode(oracle_t *oracle, const hal_can_frame_t *frame) {
-    unfit_if(oracle, (frame->data[4] & EPS_ALARMS) != 0u);
+    unfit_if(oracle, (frame->data[4] & EPS_ALARMS) != 0);
     const uint8_t bits = (uint8_t)(frame->data[6] & 0xC0u);
     on_both_modes(oracle, bits == 0xC0u, frame->time_ms);
     if (bits != 0xC0u) {
@@ -205,7 +205,7 @@ void oracle_heard(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *
     if ((int32_t)(frame->time_ms - oracle->now_ms) > 0) {
         oracle->now_ms = frame->time_ms;
     }
-    if ((side != HAL_CAN_VEHICLE) || (frame->flags != 0u) || (frame->length != 8u)) {
+    if ((side != HAL_CAN_VEHICLE) || (frame->flags != 0) || (frame->length != 8)) {
         return;
     }
     if (frame->id == 0x067u) {
@@ -250,8 +250,8 @@ static bool passed_to_vehicle(oracle_t *oracle, const hal_can_frame_t *frame, ag
         return true;
     }
     if (frame->id == oracle->signal_id) {
-        return ((frame->data[4] & 0x0Fu) == 0u) && (word_at(&frame->data[0]) == 0u) &&
-               (word_at(&frame->data[2]) == 0u) && (word_at(&frame->data[5]) == 0u);
+        return ((frame->data[4] & 0x0Fu) == 0) && (word_at(&frame->data[0]) == 0) && (word_at(&frame->data[2]) == 0) &&
+               (word_at(&frame->data[5]) == 0);
     }
     switch (frame->id) {
     case 0x168u:
@@ -260,7 +260,7 @@ static bool passed_to_vehicle(oracle_t *oracle, const hal_can_frame_t *frame, ag
         oracle->ending = oracle->ending && !all; /* a newer engagement has begun */
         return all && (frame->data[0] <= ((state == AGV_STATE_ACTIVE) ? 250u : 0u)) && zeros_from(frame, 1);
     case 0x065u:
-        return all && (word_at(frame->data) <= 18000u) && zeros_from(frame, 2);
+        return all && (word_at(frame->data) <= 18000) && zeros_from(frame, 2);
     default:
         return false;
     }
@@ -272,13 +272,13 @@ static bool is_status(const oracle_t *oracle, uint32_t id) {
 }
 
 static bool may_leave(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *frame, agv_state_t state) {
-    if ((frame->flags != 0u) || (frame->length != 8u)) {
+    if ((frame->flags != 0) || (frame->length != 8)) {
         return false;
     }
     if (side == HAL_CAN_AI) {
         return oracle->gateway && is_status(oracle, frame->id);
     }
-    if ((oracle->own_status_id != 0u) && (frame->id == oracle->own_status_id)) {
+    if ((oracle->own_status_id != 0) && (frame->id == oracle->own_status_id)) {
         return true;
     }
     if (commands_safe(state)) {
@@ -295,7 +295,7 @@ void oracle_sent(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *f
         oracle->others++;
     }
     if (!may_leave(oracle, side, frame, state)) {
-        if (oracle->forbidden == 0u) {
+        if (oracle->forbidden == 0) {
             oracle->first_forbidden = *frame;
             oracle->first_side = side;
             oracle->first_state = state;
@@ -311,7 +311,7 @@ void oracle_returned(oracle_t *oracle, agv_state_t state) {
 const char *oracle_verdict(const oracle_t *oracle) {
     static char text[160];
     const hal_can_frame_t *frame = &oracle->first_forbidden;
-    if (oracle->forbidden == 0u) {
+    if (oracle->forbidden == 0) {
         return "";
     }
     (void)snprintf(text, sizeof text,

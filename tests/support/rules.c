@@ -51,11 +51,11 @@ static int status_of(const rules_t *rules, uint32_t id) {
 void rules_init(rules_t *rules, const agv_config_t *config) {
     memset(rules, 0, sizeof *rules);
     oracle_configure(&rules->oracle, config);
-    rules->park_at_once = config->park == (uint16_t)AGV_PARK_AT_ONCE;
-    rules->shadow = config->shadow == (uint16_t)AGV_SHADOW_ON;
-    rules->running_heartbeat = config->own_heartbeat == (uint16_t)AGV_OWN_HEARTBEAT_RUNNING;
-    rules->limits_commands = (config->throttle_ceiling_pct != 100u) || (config->steering_slew_ddeg_s != 0u);
-    rules->throttle_max = (uint8_t)(config->throttle_ceiling_pct * 250u / 100u);
+    rules->park_at_once = config->park == AGV_PARK_AT_ONCE;
+    rules->shadow = config->shadow == AGV_SHADOW_ON;
+    rules->running_heartbeat = config->own_heartbeat == AGV_OWN_HEARTBEAT_RUNNING;
+    rules->limits_commands = (config->throttle_ceiling_pct != 100) || (config->steering_slew_ddeg_s != 0);
+    rules->throttle_max = (uint8_t)(config->throttle_ceiling_pct * 250 / 100);
     rules->tx_stalled_ms = config->tx_stalled_ms;
     rules->watchdog_period_ms = config->watchdog_period_ms;
     rules->bus = (rules_bus_t){.takes_frames = true};
@@ -161,8 +161,8 @@ static void on_button(rules_t *rules, bool down) {
 /* Idle is up to 2 counts; an invalid value is not used. */
 static void on_throttle(rules_t *rules, uint8_t counts) {
     const bool before = rules->throttle_high;
-    if (counts <= (uint8_t)THROTTLE_COUNTS) {
-        rules->throttle_high = counts > (uint8_t)IDLE_COUNTS;
+    if (counts <= THROTTLE_COUNTS) {
+        rules->throttle_high = counts > IDLE_COUNTS;
     }
     rules->throttle_ms = (before || rules->throttle_high) ? rules->now_ms : rules->throttle_ms;
 }
@@ -176,9 +176,9 @@ static void on_status(rules_t *rules, int status, const hal_can_frame_t *frame, 
     case VEHICLE:
         on_counter(&rules->vcu, data[7], stamp_ms);
         on_mode(rules, data[6], stamp_ms);
-        on_button(rules, (data[6] & 1u) != 0u);
+        on_button(rules, (data[6] & 1) != 0);
         rules->fast_ms = (word_at(data) > SLOW_COUNTS) ? stamp_ms : rules->fast_ms;
-        rules->alarm = (data[4] & 0xB3u) != 0u; /* bits 0, 1, 4, 5, 7 */
+        rules->alarm = (data[4] & 0xB3u) != 0; /* bits 0, 1, 4, 5, 7 */
         break;
     case THROTTLE_STATUS:
         on_throttle(rules, data[0]);
@@ -187,7 +187,7 @@ static void on_status(rules_t *rules, int status, const hal_can_frame_t *frame, 
         on_counter(&rules->eps, data[0], stamp_ms);
         break;
     case EPS_STATUS:
-        rules->alarm = (data[7] & 0xE8u) != 0u; /* bits 4, 6, 7, 8 in the protocol document */
+        rules->alarm = (data[7] & 0xE8u) != 0; /* bits 4, 6, 7, 8 in the protocol document */
         break;
     case WHEELS:
         rules->fast_ms = (is_fast(&data[0]) || is_fast(&data[4])) ? stamp_ms : rules->fast_ms;
@@ -202,14 +202,14 @@ static void on_command(rules_t *rules, int command, const hal_can_frame_t *frame
         memcpy(rules->command_data[command], frame->data, 8);
         clear_reserved(command, rules->command_data[command]);
         rules->command_heard[command] = true;
-        rules->gears_heard |= (command == GEAR) ? frame->data[0] : 0u;
+        rules->gears_heard |= (command == GEAR) ? frame->data[0] : 0;
     }
 }
 
 /* While error-passive, behind the last one of a burst: each further command begins the time anew. */
 static void require_override(rules_t *rules, int command, const hal_can_frame_t *frame, uint64_t stamp_ms) {
     const bool sends_it = (command == SIGNALS) || (command == THROTTLE) || ((command == GEAR) && rules->park_at_once);
-    if (sends_it && (frame->flags == 0u) && commands_safe(rules->last.state) && differs_from_safe(command, frame) &&
+    if (sends_it && (frame->flags == 0) && commands_safe(rules->last.state) && differs_from_safe(command, frame) &&
         (!rules->answer_owed[command] || rules->bus.is_passive)) {
         rules->answer_owed[command] = true;
         rules->answer_owed_ms[command] = (stamp_ms > rules->now_ms) ? stamp_ms : rules->now_ms;
@@ -219,7 +219,7 @@ static void require_override(rules_t *rules, int command, const hal_can_frame_t 
 void rules_heard(rules_t *rules, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t stamp_ms) {
     const int command = command_of(rules, frame->id);
     const int status = status_of(rules, frame->id);
-    const bool whole = (frame->flags == 0u) && (frame->length == 8u);
+    const bool whole = (frame->flags == 0) && (frame->length == 8);
     rules->now_ms = (stamp_ms > rules->now_ms) ? stamp_ms : rules->now_ms;
     rules->sent_now = 0;
     rules->alarm = false;
@@ -265,16 +265,16 @@ static void check_passed(rules_t *rules, hal_can_side_t side, const hal_can_fram
     if ((command < 0) || commands_safe(state)) {
         return;
     }
-    if ((command == THROTTLE) && (frame->data[0] == 0u)) {
+    if ((command == THROTTLE) && (frame->data[0] == 0)) {
         return; /* throttle 0 at the end of an engagement, or of STANDBY, sent late */
     }
     uint8_t expected[8];
     memcpy(expected, rules->command_data[command], 8);
-    if ((command == GEAR) && ((rules->gears_heard & frame->data[0]) != 0u)) {
+    if ((command == GEAR) && ((rules->gears_heard & frame->data[0]) != 0)) {
         expected[0] = frame->data[0]; /* a later gear command may have been dropped because the vehicle was moving */
     }
     if (command == THROTTLE) {
-        const uint8_t most = (state == AGV_STATE_ACTIVE) ? rules->throttle_max : 0u;
+        const uint8_t most = (state == AGV_STATE_ACTIVE) ? rules->throttle_max : 0;
         expected[0] = (expected[0] < most) ? expected[0] : most;
     }
     const bool same = memcmp(expected, frame->data, 8) == 0;
@@ -321,7 +321,7 @@ void rules_sent(rules_t *rules, hal_can_side_t side, const hal_can_frame_t *fram
 /* ---- Required reactions ---- */
 
 static uint64_t age_ms(const rules_t *rules, uint64_t then_ms) {
-    return (rules->now_ms > then_ms) ? (rules->now_ms - then_ms) : 0u;
+    return (rules->now_ms > then_ms) ? (rules->now_ms - then_ms) : 0;
 }
 
 /* SUP-2, SUP-3: while supervising, silence must trip. Only a tick checks the clock. */
@@ -344,11 +344,11 @@ static void check_silence(rules_t *rules) {
 
 /* FSM-2: all safe commands are sent in the call that trips. */
 static void check_trip(rules_t *rules) {
-    const uint8_t needed = (uint8_t)((1u << SIGNALS) | (1u << THROTTLE) | (rules->park_at_once ? (1u << GEAR) : 0u));
+    const uint8_t needed = (uint8_t)((1u << SIGNALS) | (1u << THROTTLE) | (rules->park_at_once ? (1u << GEAR) : 0));
     rules->trips++;
     rules->button_was_up = rules->status_heard[VEHICLE] && !rules->button_down; /* the next press is a new one */
     forget_confirmation(rules);
-    rules->park_sent = (rules->sent_now & (1u << GEAR)) != 0u;
+    rules->park_sent = (rules->sent_now & (1u << GEAR)) != 0;
     rules->own_counter_known = false;
     rules->commanding_ms = rules->now_ms;
     if (rules->bus.takes_frames && !rules->shadow && ((rules->sent_now & needed) != needed)) {
@@ -443,12 +443,12 @@ static void check_closed(rules_t *rules, const rules_seen_t *seen) {
  */
 static void add_up_confirmation(rules_t *rules) {
     const uint64_t gap_ms = age_ms(rules, rules->ticked_ms);
-    const bool engaged = rules->status_heard[VEHICLE] && (rules->mode_bits == (uint8_t)ENGAGED_ALONE);
+    const bool engaged = rules->status_heard[VEHICLE] && (rules->mode_bits == ENGAGED_ALONE);
     const bool in_park = rules->status_heard[GEAR_STATUS] && (rules->status_data[GEAR_STATUS][0] == (uint8_t)P) &&
                          (age_ms(rules, rules->status_ms[GEAR_STATUS]) <= GEAR_STATUS_MS);
     const bool out_of_park = rules->park_sent && !in_park;
-    rules->engaged_sum_ms += (engaged && rules->was_engaged) ? gap_ms : 0u;
-    rules->no_park_sum_ms += (out_of_park && rules->was_out_of_park) ? gap_ms : 0u;
+    rules->engaged_sum_ms += (engaged && rules->was_engaged) ? gap_ms : 0;
+    rules->no_park_sum_ms += (out_of_park && rules->was_out_of_park) ? gap_ms : 0;
     if (engaged || out_of_park) {
         rules->unconfirmed_ms = rules->now_ms;
     } else if (age_ms(rules, rules->unconfirmed_ms) >= (CONFIRMED_MS - STEP_MS)) {
@@ -496,7 +496,7 @@ static void check_sending(rules_t *rules, const rules_seen_t *seen, uint64_t tic
         memset(rules->answer_owed, 0, sizeof rules->answer_owed);
         return;
     }
-    const bool was_passive = age_ms(rules, rules->passive_ms) <= (uint64_t)PASSIVE_CYCLE_MS;
+    const bool was_passive = age_ms(rules, rules->passive_ms) <= PASSIVE_CYCLE_MS;
     const uint64_t cycle_ms = was_passive ? PASSIVE_CYCLE_MS : CYCLE_MS;
     for (int i = 0; i <= THROTTLE; i++) {
         const bool sends_it = (i != GEAR) || rules->park_at_once;

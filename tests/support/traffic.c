@@ -17,7 +17,7 @@ const traffic_row_t TRAFFIC[TRAFFIC_MESSAGES] = {
 };
 
 void traffic_heal(traffic_message_t traffic[TRAFFIC_MESSAGES]) {
-    for (unsigned i = 0; i < (unsigned)TRAFFIC_MESSAGES; i++) {
+    for (unsigned i = 0; i < TRAFFIC_MESSAGES; i++) {
         traffic_message_t *m = &traffic[i];
         m->muted = false;
         m->frozen = false;
@@ -31,14 +31,14 @@ void traffic_heal(traffic_message_t traffic[TRAFFIC_MESSAGES]) {
 }
 
 uint16_t traffic_id(const agv_config_t *config, unsigned message) {
-    return (config->id_set == (uint16_t)AGV_ID_SET_TABLE) ? TRAFFIC[message].table_id : TRAFFIC[message].id;
+    return (config->id_set == AGV_ID_SET_TABLE) ? TRAFFIC[message].table_id : TRAFFIC[message].id;
 }
 
 void traffic_address(traffic_message_t traffic[TRAFFIC_MESSAGES], const agv_config_t *config) {
-    const bool gateway = config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
-    for (unsigned i = 0; i < (unsigned)TRAFFIC_MESSAGES; i++) {
+    const bool gateway = config->topology == AGV_TOPOLOGY_GATEWAY;
+    for (unsigned i = 0; i < TRAFFIC_MESSAGES; i++) {
         traffic[i].id = traffic_id(config, i);
-        traffic[i].side = (gateway && (i < (unsigned)TRAFFIC_COMMANDS)) ? HAL_CAN_AI : HAL_CAN_VEHICLE;
+        traffic[i].side = (gateway && (i < TRAFFIC_COMMANDS)) ? HAL_CAN_AI : HAL_CAN_VEHICLE;
     }
 }
 
@@ -64,7 +64,7 @@ void traffic_mode(traffic_message_t traffic[TRAFFIC_MESSAGES], uint8_t mode) {
 
 void traffic_button(traffic_message_t traffic[TRAFFIC_MESSAGES], bool down) {
     uint8_t *byte = &traffic[M_VEHICLE].data[6];
-    *byte = (uint8_t)((*byte & 0xFEu) | (down ? (uint8_t)BUTTON_1 : 0u));
+    *byte = (uint8_t)((*byte & 0xFEu) | (down ? (uint8_t)BUTTON_1 : 0));
 }
 
 void traffic_gear(traffic_message_t traffic[TRAFFIC_MESSAGES], uint8_t gear) {
@@ -73,15 +73,15 @@ void traffic_gear(traffic_message_t traffic[TRAFFIC_MESSAGES], uint8_t gear) {
 
 void traffic_put_word(uint8_t *data, uint16_t value) {
     data[0] = (uint8_t)value;
-    data[1] = (uint8_t)(value >> 8u);
+    data[1] = (uint8_t)(value >> 8);
 }
 
 void traffic_wheels(traffic_message_t traffic[TRAFFIC_MESSAGES], int32_t left_mm_s, int32_t right_mm_s) {
     uint8_t *data = traffic[M_WHEELS].data;
     traffic_put_word(&data[0], (uint16_t)(uint32_t)left_mm_s);
-    traffic_put_word(&data[2], (uint16_t)((uint32_t)left_mm_s >> 16u));
+    traffic_put_word(&data[2], (uint16_t)((uint32_t)left_mm_s >> 16));
     traffic_put_word(&data[4], (uint16_t)(uint32_t)right_mm_s);
-    traffic_put_word(&data[6], (uint16_t)((uint32_t)right_mm_s >> 16u));
+    traffic_put_word(&data[6], (uint16_t)((uint32_t)right_mm_s >> 16));
 }
 
 void traffic_ai_drives(traffic_message_t traffic[TRAFFIC_MESSAGES]) {

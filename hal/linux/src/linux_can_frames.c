@@ -25,10 +25,10 @@ static void from_kernel(const struct canfd_frame *raw, bool is_fd, hal_can_frame
     } else {
         const bool is_extended = (raw->can_id & CAN_EFF_FLAG) != 0;
         frame->id = raw->can_id & (is_extended ? CAN_EFF_MASK : CAN_SFF_MASK);
-        frame->flags |= is_extended ? HAL_CAN_EXTENDED : 0u;
-        frame->flags |= ((raw->can_id & CAN_RTR_FLAG) != 0) ? HAL_CAN_REMOTE : 0u;
+        frame->flags |= is_extended ? HAL_CAN_EXTENDED : 0;
+        frame->flags |= ((raw->can_id & CAN_RTR_FLAG) != 0) ? HAL_CAN_REMOTE : 0;
     }
-    frame->flags |= is_fd ? HAL_CAN_FD : 0u;
+    frame->flags |= is_fd ? HAL_CAN_FD : 0;
     if ((frame->flags & HAL_CAN_REMOTE) == 0) {
         memcpy(frame->data, raw->data, (raw->len < sizeof frame->data) ? raw->len : sizeof frame->data);
     }
@@ -41,9 +41,9 @@ static bool to_kernel(const hal_can_frame_t *frame, struct can_frame *raw) {
         return false;
     }
     *raw = (struct can_frame){.can_id = frame->id, .len = frame->length};
-    raw->can_id |= ((frame->flags & HAL_CAN_EXTENDED) != 0) ? CAN_EFF_FLAG : 0u;
-    raw->can_id |= ((frame->flags & HAL_CAN_REMOTE) != 0) ? CAN_RTR_FLAG : 0u;
-    raw->can_id |= ((frame->flags & HAL_CAN_ERROR) != 0) ? CAN_ERR_FLAG : 0u;
+    raw->can_id |= ((frame->flags & HAL_CAN_EXTENDED) != 0) ? CAN_EFF_FLAG : 0;
+    raw->can_id |= ((frame->flags & HAL_CAN_REMOTE) != 0) ? CAN_RTR_FLAG : 0;
+    raw->can_id |= ((frame->flags & HAL_CAN_ERROR) != 0) ? CAN_ERR_FLAG : 0;
     if ((frame->flags & HAL_CAN_REMOTE) == 0) {
         memcpy(raw->data, frame->data, frame->length);
     }

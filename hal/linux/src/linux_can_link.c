@@ -17,7 +17,7 @@ typedef struct {
 } part_t;
 
 static size_t aligned(size_t size) {
-    return (size + ALIGNED - 1u) / ALIGNED * ALIGNED;
+    return (size + ALIGNED - 1) / ALIGNED * ALIGNED;
 }
 
 static part_t after(part_t part, size_t size) {

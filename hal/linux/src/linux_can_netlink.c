@@ -88,7 +88,7 @@ int linux_can_find(const char *name, int *index, unsigned *kind) {
     find_t request = {.header = {.nlmsg_len = sizeof request, .nlmsg_type = RTM_GETLINK, .nlmsg_flags = NLM_F_REQUEST},
                       .interface = {.ifi_family = AF_UNSPEC}};
     memcpy(request.name_text, name, strlen(name));
-    request.name = attribute(IFLA_IFNAME, offsetof(find_t, name), offsetof(find_t, name_text) + strlen(name) + 1u);
+    request.name = attribute(IFLA_IFNAME, offsetof(find_t, name), offsetof(find_t, name_text) + strlen(name) + 1);
     const int result = query(&request, sizeof request, &link);
     if (result == 0) {
         *index = link.index;

@@ -10,7 +10,7 @@
 
 static uint64_t read_ns(clockid_t id) {
     struct timespec now = {0};
-    return (clock_gettime(id, &now) == 0) ? (uint64_t)now.tv_sec * NS_PER_S + (uint64_t)now.tv_nsec : 0u;
+    return (clock_gettime(id, &now) == 0) ? (uint64_t)now.tv_sec * NS_PER_S + (uint64_t)now.tv_nsec : 0;
 }
 
 /* This clock goes on while the computer sleeps: then nothing was supervised, which must show. */

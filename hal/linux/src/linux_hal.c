@@ -15,7 +15,7 @@ enum { US_PER_MS = 1000, LOOK_EVERY_US = 100000 };
 #define RECORDS_AT_END_MAX 4096u
 
 linux_hal_side_t *linux_hal_side(hal_t *hal, hal_can_side_t side) {
-    const bool exists = (unsigned)side < (unsigned)HAL_CAN_SIDES && hal->sides[side].interface != NULL;
+    const bool exists = (unsigned)side < HAL_CAN_SIDES && hal->sides[side].interface != NULL;
     return exists ? &hal->sides[side] : NULL;
 }
 
@@ -67,7 +67,7 @@ static bool check_sides(const hal_t *hal, char *error) {
 }
 
 static bool open_sides(hal_t *hal, char *error) {
-    for (size_t i = 0; i < (size_t)HAL_CAN_SIDES; i++) {
+    for (size_t i = 0; i < HAL_CAN_SIDES; i++) {
         linux_hal_side_t *side = &hal->sides[i];
         if (side->interface != NULL && !open_side(hal, side, error)) {
             return false;
@@ -84,7 +84,7 @@ bool linux_hal_open(hal_t *hal, const linux_hal_config_t *config, char *error) {
     *hal = (hal_t){.ops = &linux_hal_ops, .config = *config};
     error[0] = '\0';
     linux_clock_start(&hal->clock);
-    for (size_t i = 0; i < (size_t)HAL_CAN_SIDES; i++) {
+    for (size_t i = 0; i < HAL_CAN_SIDES; i++) {
         hal->sides[i].interface = config->interfaces[i];
         hal->sides[i].can.fd = -1;
     }
@@ -100,7 +100,7 @@ bool linux_hal_open(hal_t *hal, const linux_hal_config_t *config, char *error) {
 }
 
 int linux_hal_fd(const hal_t *hal, hal_can_side_t side) {
-    return ((unsigned)side < (unsigned)HAL_CAN_SIDES) ? hal->sides[side].can.fd : -1;
+    return ((unsigned)side < HAL_CAN_SIDES) ? hal->sides[side].can.fd : -1;
 }
 
 /* A lost frame may have been the echo of the frame in flight. That frame then counts as sent, because its echo would
@@ -158,7 +158,7 @@ void linux_hal_finish(hal_t *hal) {
         struct pollfd files[HAL_CAN_SIDES] = {{.fd = vehicle->can.fd, .events = POLLIN},
                                               {.fd = ai->can.fd, .events = POLLIN}};
         (void)poll(files, HAL_CAN_SIDES, 1); /* 1 ms: no event reports room in a full kernel queue */
-        for (size_t i = 0; i < (size_t)HAL_CAN_SIDES; i++) {
+        for (size_t i = 0; i < HAL_CAN_SIDES; i++) {
             read_echoes(hal, (hal_can_side_t)i);
             linux_hal_queue_give(&hal->sides[i], linux_hal_now_us(hal));
         }
@@ -267,7 +267,7 @@ static void check_link(hal_t *hal, linux_hal_side_t *side, uint64_t now_us) {
 bool linux_hal_tick(hal_t *hal) {
     const uint64_t now_us = linux_hal_now_us(hal);
     bool changed = false;
-    for (size_t i = 0; i < (size_t)HAL_CAN_SIDES; i++) {
+    for (size_t i = 0; i < HAL_CAN_SIDES; i++) {
         linux_hal_side_t *side = &hal->sides[i];
         if (side->interface == NULL) {
             continue;

@@ -18,7 +18,7 @@ static void enter_bus_off(linux_hal_side_t *side) {
 }
 
 void linux_hal_controller_error(linux_hal_side_t *side, const hal_can_frame_t *frame) {
-    const unsigned details = ((frame->id & CAN_ERR_CRTL) != 0) ? frame->data[CONTROLLER_DETAILS] : 0u;
+    const unsigned details = ((frame->id & CAN_ERR_CRTL) != 0) ? frame->data[CONTROLLER_DETAILS] : 0;
     if ((details & CAN_ERR_CRTL_RX_OVERFLOW) != 0) {
         side->overruns++;
     }

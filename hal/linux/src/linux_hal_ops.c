@@ -95,13 +95,13 @@ static void inputs_read(hal_t *hal, hal_inputs_t *inputs) {
 
 static bool clock_second_ms(hal_t *hal, uint32_t *time_ms) {
     (void)hal;
-    *time_ms = 0u;
+    *time_ms = 0;
     return false;
 }
 
 static uint32_t self_test(hal_t *hal) {
     (void)hal;
-    return 0u;
+    return 0;
 }
 
 const hal_ops_t linux_hal_ops = {

@@ -16,7 +16,7 @@ enum { PATIENCE_US = 100000, PATIENCE_UNPURGED = 10, DOUBLED_MAX = 7 };
 static uint64_t rank_of(const hal_can_frame_t *frame) {
     const bool is_extended = (frame->flags & HAL_CAN_EXTENDED) != 0;
     const uint64_t value = is_extended ? frame->id : (uint64_t)frame->id << STANDARD_SHIFT;
-    return value * 2u + (is_extended ? 1u : 0u);
+    return value * 2 + (is_extended ? 1 : 0);
 }
 
 static bool can_be_sent(const hal_can_frame_t *frame) {
@@ -62,8 +62,8 @@ static uint64_t drop_older(linux_hal_side_t *side, const hal_can_frame_t *frame,
  * first. */
 static void insert(linux_hal_side_t *side, const linux_hal_waiting_t *frame) {
     size_t place = side->waiting_count;
-    while (place > 0 && rank_of(&frame->frame) < rank_of(&side->waiting[place - 1u].frame)) {
-        side->waiting[place] = side->waiting[place - 1u];
+    while (place > 0 && rank_of(&frame->frame) < rank_of(&side->waiting[place - 1].frame)) {
+        side->waiting[place] = side->waiting[place - 1];
         place--;
     }
     side->waiting[place] = *frame;
@@ -144,5 +144,5 @@ uint32_t linux_hal_queue_pending_ms(const linux_hal_side_t *side, uint64_t now_u
         oldest_us = (side->waiting[i].since_us < oldest_us) ? side->waiting[i].since_us : oldest_us;
     }
     const uint64_t age_ms = (now_us > oldest_us) ? (now_us - oldest_us) / US_PER_MS : 0;
-    return (age_ms == 0) ? 1u : (uint32_t)age_ms;
+    return (age_ms == 0) ? 1 : (uint32_t)age_ms;
 }

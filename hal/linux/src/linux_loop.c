@@ -74,12 +74,12 @@ void linux_loop_remove(linux_loop_t *loop, int fd) {
 /* One tick, however many milliseconds have passed. */
 static uint32_t take_tick(const linux_loop_t *loop) {
     uint64_t passed = 0;
-    return (read(loop->timer, &passed, sizeof passed) == (ssize_t)sizeof passed) ? LINUX_LOOP_TICK : 0u;
+    return (read(loop->timer, &passed, sizeof passed) == (ssize_t)sizeof passed) ? LINUX_LOOP_TICK : 0;
 }
 
 static uint32_t take_signal(const linux_loop_t *loop) {
     struct signalfd_siginfo signal;
-    return (read(loop->signals, &signal, sizeof signal) == (ssize_t)sizeof signal) ? LINUX_LOOP_SIGNAL : 0u;
+    return (read(loop->signals, &signal, sizeof signal) == (ssize_t)sizeof signal) ? LINUX_LOOP_SIGNAL : 0;
 }
 
 static uint32_t take_event(const linux_loop_t *loop, const struct epoll_event *event) {

@@ -6,10 +6,10 @@
 /* The contact follows its command after SIM_BOARD_RELAY_MS, unless it is welded or stuck. */
 static void follow_contact(hal_t *hal, uint32_t now_ms) {
     const sim_hal_pin_t *output = &hal->safety_output;
-    const bool settled = (output->changes == 0u) || (now_ms - output->changed_ms >= (uint32_t)SIM_BOARD_RELAY_MS);
-    if (hal->board.contact == (uint8_t)SIM_CONTACT_STUCK_OPEN) {
+    const bool settled = (output->changes == 0) || (now_ms - output->changed_ms >= SIM_BOARD_RELAY_MS);
+    if (hal->board.contact == SIM_CONTACT_STUCK_OPEN) {
         hal->contact_closed = false;
-    } else if (settled && (output->on || (hal->board.contact != (uint8_t)SIM_CONTACT_WELDED))) {
+    } else if (settled && (output->on || (hal->board.contact != SIM_CONTACT_WELDED))) {
         hal->contact_closed = output->on;
     } else {
         /* moves, or is welded */
@@ -37,5 +37,5 @@ uint32_t sim_board_second_ms(hal_t *hal, uint32_t now_ms) {
     const uint32_t passed_ms = now_ms - hal->second_read_ms;
     hal->second_us += (uint64_t)passed_ms * (uint64_t)(1000 + hal->board.clock_permille);
     hal->second_read_ms = now_ms;
-    return (uint32_t)(hal->second_us / 1000u);
+    return (uint32_t)(hal->second_us / 1000);
 }

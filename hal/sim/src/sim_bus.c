@@ -8,10 +8,10 @@
 bool sim_bus_init(sim_bus_t *bus, uint32_t bitrate) {
     memset(bus, 0, sizeof *bus);
     bus->due_us = SIM_BUS_NEVER;
-    if (bitrate != 125000u && bitrate != 250000u && bitrate != 500000u && bitrate != 1000000u) {
+    if (bitrate != 125000 && bitrate != 250000 && bitrate != 500000 && bitrate != 1000000) {
         return false;
     }
-    bus->bit_us = 1000000u / bitrate;
+    bus->bit_us = 1000000 / bitrate;
     return true;
 }
 
@@ -55,7 +55,7 @@ bool sim_bus_send(sim_bus_t *bus, sim_bus_node_t number, const hal_can_frame_t *
     sim_bus_slot_t *slot = &node->tx[node->tx_count];
     slot->frame = *frame;
     slot->time_us = bus->now_us;
-    for (unsigned i = (frame->flags & HAL_CAN_REMOTE) != 0 ? 0u : frame->length; i < sizeof slot->frame.data; i++) {
+    for (unsigned i = (frame->flags & HAL_CAN_REMOTE) != 0 ? 0 : frame->length; i < sizeof slot->frame.data; i++) {
         slot->frame.data[i] = 0;
     }
     node->tx_key[node->tx_count] = sim_frame_key(frame);
@@ -90,15 +90,15 @@ void sim_bus_status(const sim_bus_t *bus, sim_bus_node_t number, hal_can_status_
         return;
     }
     const sim_bus_node_state_t *node = &bus->nodes[number];
-    const unsigned oldest = node->current_aborted ? 1u : 0u;
+    const unsigned oldest = node->current_aborted ? 1 : 0;
     if (node->bus_off) {
         status->state = HAL_CAN_BUS_OFF;
     } else if (sim_is_passive(node)) {
         status->state = HAL_CAN_ERROR_PASSIVE;
     }
     if (node->tx_count > oldest) {
-        const uint64_t age_ms = (bus->now_us - node->tx[oldest].time_us) / 1000u;
-        status->tx_pending_ms = age_ms == 0 ? 1u : age_ms > UINT32_MAX ? UINT32_MAX : (uint32_t)age_ms;
+        const uint64_t age_ms = (bus->now_us - node->tx[oldest].time_us) / 1000;
+        status->tx_pending_ms = age_ms == 0 ? 1 : age_ms > UINT32_MAX ? UINT32_MAX : (uint32_t)age_ms;
     }
     status->bus_off_count = node->bus_off_count;
     status->overrun_count = node->overrun_count;
@@ -123,7 +123,7 @@ bool sim_bus_receive(sim_bus_t *bus, sim_bus_node_t number, hal_can_frame_t *fra
 }
 
 size_t sim_bus_waiting(const sim_bus_t *bus, sim_bus_node_t number) {
-    return number < bus->node_count ? bus->nodes[number].tx_count : 0u;
+    return number < bus->node_count ? bus->nodes[number].tx_count : 0;
 }
 
 void sim_bus_stats(const sim_bus_t *bus, sim_bus_stats_t *stats) {

@@ -97,7 +97,7 @@ void sim_bus_recover(sim_bus_t *bus, sim_bus_node_t number) {
 }
 
 void sim_bus_pause_recovery(sim_bus_t *bus) {
-    for (uint32_t set = bus->recovering; set != 0; set &= set - 1u) {
+    for (uint32_t set = bus->recovering; set != 0; set &= set - 1) {
         sim_bus_node_state_t *node = &bus->nodes[sim_lowest(set)];
         if (node->plugged) {
             count_idle_sequences(bus, node);
@@ -108,7 +108,7 @@ void sim_bus_pause_recovery(sim_bus_t *bus) {
 
 /* Delimiter, end of frame and interframe bits of a frame are 11 recessive bits: one sequence. */
 void sim_bus_resume_recovery(sim_bus_t *bus) {
-    for (uint32_t set = bus->recovering; set != 0; set &= set - 1u) {
+    for (uint32_t set = bus->recovering; set != 0; set &= set - 1) {
         sim_bus_node_state_t *node = &bus->nodes[sim_lowest(set)];
         if (node->plugged) {
             node->recovery_left--;
@@ -136,12 +136,12 @@ static void fail_alone(sim_bus_t *bus, unsigned number) {
 }
 
 void sim_bus_run_aside(sim_bus_t *bus) {
-    for (uint32_t set = bus->alone; set != 0; set &= set - 1u) {
+    for (uint32_t set = bus->alone; set != 0; set &= set - 1) {
         if (bus->nodes[sim_lowest(set)].alone_us <= bus->now_us) {
             fail_alone(bus, sim_lowest(set));
         }
     }
-    for (uint32_t set = bus->recovering; set != 0; set &= set - 1u) {
+    for (uint32_t set = bus->recovering; set != 0; set &= set - 1) {
         if (sim_bus_recovered_us(bus, &bus->nodes[sim_lowest(set)]) <= bus->now_us) {
             end_recovery(bus, sim_lowest(set));
         }

@@ -16,13 +16,13 @@
 #define UNSTUFFED_BITS 10u
 
 static uint32_t data_bytes(const hal_can_frame_t *frame) {
-    return (frame->flags & HAL_CAN_REMOTE) != 0 ? 0u : frame->length;
+    return (frame->flags & HAL_CAN_REMOTE) != 0 ? 0 : frame->length;
 }
 
 uint32_t sim_bus_frame_bits(const hal_can_frame_t *frame) {
     uint32_t stuffed = (frame->flags & HAL_CAN_EXTENDED) != 0 ? STUFFED_BITS_EXTENDED : STUFFED_BITS_STANDARD;
-    stuffed += 8u * data_bytes(frame);
-    return stuffed + UNSTUFFED_BITS + (stuffed - 1u) / 4u;
+    stuffed += 8 * data_bytes(frame);
+    return stuffed + UNSTUFFED_BITS + (stuffed - 1) / 4;
 }
 
 /*
@@ -31,7 +31,7 @@ uint32_t sim_bus_frame_bits(const hal_can_frame_t *frame) {
  * extended: identifier 11, SRR = 1, IDE = 1, identifier 18, RTR
  */
 uint32_t sim_frame_key(const hal_can_frame_t *frame) {
-    const uint32_t remote = (frame->flags & HAL_CAN_REMOTE) != 0 ? 1u : 0u;
+    const uint32_t remote = (frame->flags & HAL_CAN_REMOTE) != 0 ? 1 : 0;
     if ((frame->flags & HAL_CAN_EXTENDED) == 0) {
         return frame->id << 21 | remote << 20;
     }
@@ -45,17 +45,17 @@ bool sim_frame_is_classic(const hal_can_frame_t *frame) {
 }
 
 uint32_t sim_frame_header_bits(const hal_can_frame_t *frame) {
-    return (frame->flags & HAL_CAN_EXTENDED) != 0 ? 35u : 15u;
+    return (frame->flags & HAL_CAN_EXTENDED) != 0 ? 35 : 15;
 }
 
 bool sim_frame_bit(const hal_can_frame_t *frame, uint32_t index) {
     if (index < DLC_BITS) {
-        return (frame->length >> (DLC_BITS - 1u - index) & 1u) != 0;
+        return (frame->length >> (DLC_BITS - 1 - index) & 1) != 0;
     }
     const uint32_t data = index - DLC_BITS;
-    return (frame->data[data / 8u] >> (7u - data % 8u) & 1u) != 0;
+    return (frame->data[data / 8] >> (7 - data % 8) & 1) != 0;
 }
 
 uint32_t sim_frame_body_bits(const hal_can_frame_t *frame) {
-    return DLC_BITS + 8u * data_bytes(frame);
+    return DLC_BITS + 8 * data_bytes(frame);
 }

@@ -12,12 +12,12 @@ uint32_t sim_hal_clock_at(const hal_t *hal, uint64_t bus_us) {
     if (hal->direct) {
         return hal->direct_now_ms;
     }
-    return hal->config.clock_start_ms + (uint32_t)((bus_us + hal->config.clock_phase_us) / 1000u);
+    return hal->config.clock_start_ms + (uint32_t)((bus_us + hal->config.clock_phase_us) / 1000);
 }
 
 uint32_t sim_hal_now_ms(const hal_t *hal) {
     const sim_bus_t *bus = clock_bus(hal);
-    return sim_hal_clock_at(hal, bus != NULL ? sim_bus_now_us(bus) : 0u);
+    return sim_hal_clock_at(hal, bus != NULL ? sim_bus_now_us(bus) : 0);
 }
 
 void sim_hal_init(hal_t *hal, const sim_hal_config_t *config) {
@@ -56,8 +56,8 @@ void sim_hal_init_direct(hal_t *hal, const sim_hal_config_t *config, unsigned si
     hal->direct = true;
     hal->sink = sink;
     hal->sink_ctx = ctx;
-    hal->can[HAL_CAN_VEHICLE].exists = sides >= 1u;
-    hal->can[HAL_CAN_AI].exists = sides >= 2u;
+    hal->can[HAL_CAN_VEHICLE].exists = sides >= 1;
+    hal->can[HAL_CAN_AI].exists = sides >= 2;
 }
 
 bool sim_hal_receive(hal_t *hal, hal_can_side_t side, hal_can_frame_t *frame) {
@@ -70,7 +70,7 @@ bool sim_hal_receive(hal_t *hal, hal_can_side_t side, hal_can_frame_t *frame) {
         return false;
     }
     frame->time_ms = sim_hal_clock_at(hal, time_us);
-    frame->time_us = (uint16_t)((time_us + hal->config.clock_phase_us) % 1000u);
+    frame->time_us = (uint16_t)((time_us + hal->config.clock_phase_us) % 1000);
     can->received++;
     return true;
 }
@@ -126,7 +126,7 @@ void sim_hal_reset(hal_t *hal, hal_reset_cause_t cause) {
 
 void sim_hal_fail_at(hal_t *hal, uint32_t first, uint32_t count, uint32_t ops) {
     hal->fail_first = first;
-    hal->fail_count = first == 0 ? 0u : count;
+    hal->fail_count = first == 0 ? 0 : count;
     hal->fail_ops = ops;
 }
 

@@ -3,12 +3,12 @@
 
 static bool is_to_fail(const hal_t *hal, sim_hal_op_t op) {
     return hal->calls >= hal->fail_first && hal->calls - hal->fail_first < hal->fail_count &&
-           (hal->fail_ops >> op & 1u) != 0;
+           (hal->fail_ops >> op & 1) != 0;
 }
 
 /* Count the call. @return false: the call has to fail, or the MCU is held in reset. */
 static bool enter(hal_t *hal, sim_hal_op_t op) {
-    hal->calls += (hal->calls < UINT32_MAX) ? 1u : 0u; /* what fails for good does so in a loop without an end, too */
+    hal->calls += (hal->calls < UINT32_MAX) ? 1 : 0; /* what fails for good does so in a loop without an end, too */
     hal->op_calls[op]++;
     if (is_to_fail(hal, op)) {
         hal->failures++;
@@ -38,8 +38,8 @@ static bool can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *fra
     if (taken && !can->swallows) {
         taken = hal->direct ? send_direct(hal, can, side, frame) : sim_bus_send(can->bus, can->node, frame);
     }
-    can->sent += taken ? 1u : 0u;
-    can->refused += taken ? 0u : 1u;
+    can->sent += taken ? 1 : 0;
+    can->refused += taken ? 0 : 1;
     return taken;
 }
 
@@ -119,7 +119,7 @@ static void watchdog_feed(hal_t *hal) {
 
 static size_t store_read_latch(hal_t *hal, void *record, size_t size) {
     const bool works = enter(hal, SIM_HAL_OP_STORE_READ_LATCH) && hal->config.store != NULL;
-    return works ? sim_store_read_latch(hal->config.store, record, size) : 0u;
+    return works ? sim_store_read_latch(hal->config.store, record, size) : 0;
 }
 
 static bool store_write_latch(hal_t *hal, const void *record, size_t size) {
@@ -134,7 +134,7 @@ static bool store_append(hal_t *hal, const void *record, size_t size) {
 
 static size_t store_read_record(hal_t *hal, uint32_t index, void *record, size_t size) {
     const bool works = enter(hal, SIM_HAL_OP_STORE_READ_RECORD) && hal->config.store != NULL;
-    return works ? sim_store_read_record(hal->config.store, index, record, size) : 0u;
+    return works ? sim_store_read_record(hal->config.store, index, record, size) : 0;
 }
 
 static void inputs_read(hal_t *hal, hal_inputs_t *inputs) {
@@ -153,7 +153,7 @@ static bool clock_second_ms(hal_t *hal, uint32_t *time_ms) {
 }
 
 static uint32_t self_test(hal_t *hal) {
-    return enter(hal, SIM_HAL_OP_SELF_TEST) ? hal->board.failed : 0u;
+    return enter(hal, SIM_HAL_OP_SELF_TEST) ? hal->board.failed : 0;
 }
 
 const hal_ops_t sim_hal_ops = {

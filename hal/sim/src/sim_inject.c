@@ -49,7 +49,7 @@ void sim_bus_set_error_counters(sim_bus_t *bus, sim_bus_node_t number, uint16_t 
 
 void sim_bus_force_bus_off(sim_bus_t *bus, sim_bus_node_t number) {
     if (number < bus->node_count) {
-        sim_bus_set_error_counters(bus, number, SIM_TEC_MAX + 1u, bus->nodes[number].rec);
+        sim_bus_set_error_counters(bus, number, SIM_TEC_MAX + 1, bus->nodes[number].rec);
     }
 }
 
@@ -64,16 +64,16 @@ void sim_bus_deliver(sim_bus_t *bus, sim_bus_node_t number, const hal_can_frame_
         return;
     }
     hal_can_frame_t received = *frame;
-    received.time_ms = (uint32_t)(bus->now_us / 1000u);
+    received.time_ms = (uint32_t)(bus->now_us / 1000);
     sim_bus_arrive(&bus->nodes[number], &received, bus->now_us);
 }
 
 void sim_bus_error_counters(const sim_bus_t *bus, sim_bus_node_t number, uint16_t *tec, uint16_t *rec) {
     const bool there = number < bus->node_count;
     if (tec != NULL) {
-        *tec = there ? bus->nodes[number].tec : 0u;
+        *tec = there ? bus->nodes[number].tec : 0;
     }
     if (rec != NULL) {
-        *rec = there ? bus->nodes[number].rec : 0u;
+        *rec = there ? bus->nodes[number].rec : 0;
     }
 }

@@ -4,8 +4,8 @@
 void sim_bus_remove(sim_bus_node_state_t *node, unsigned slot) {
     node->tx_count--;
     for (unsigned i = slot; i < node->tx_count; i++) {
-        node->tx[i] = node->tx[i + 1u];
-        node->tx_key[i] = node->tx_key[i + 1u];
+        node->tx[i] = node->tx[i + 1];
+        node->tx_key[i] = node->tx_key[i + 1];
     }
 }
 

@@ -15,7 +15,7 @@ static uint64_t next_start_us(const sim_bus_t *bus) {
         return idle_us;
     }
     uint64_t start_us = SIM_BUS_NEVER;
-    for (uint32_t set = bus->ready; set != 0; set &= set - 1u) {
+    for (uint32_t set = bus->ready; set != 0; set &= set - 1) {
         const uint64_t until_us = bus->nodes[sim_lowest(set)].suspend_until_us;
         start_us = until_us < start_us ? until_us : start_us;
     }
@@ -25,11 +25,11 @@ static uint64_t next_start_us(const sim_bus_t *bus) {
 /* Time of the next event of the nodes that are alone or recovering. */
 static uint64_t aside_due_us(const sim_bus_t *bus) {
     uint64_t due_us = SIM_BUS_NEVER;
-    for (uint32_t set = bus->alone; set != 0; set &= set - 1u) {
+    for (uint32_t set = bus->alone; set != 0; set &= set - 1) {
         const uint64_t alone_us = bus->nodes[sim_lowest(set)].alone_us;
         due_us = alone_us < due_us ? alone_us : due_us;
     }
-    for (uint32_t set = bus->recovering; set != 0; set &= set - 1u) {
+    for (uint32_t set = bus->recovering; set != 0; set &= set - 1) {
         const uint64_t end_us = sim_bus_recovered_us(bus, &bus->nodes[sim_lowest(set)]);
         due_us = end_us < due_us ? end_us : due_us;
     }
@@ -42,7 +42,7 @@ void sim_bus_schedule(sim_bus_t *bus) {
         due_us = bus->end_us;
     } else if (bus->ready != 0) {
         bus->start_us = next_start_us(bus);
-        due_us = bus->start_us + 1u; /* 1 us later, so that all frames sent at start_us take part in the arbitration */
+        due_us = bus->start_us + 1; /* 1 us later, so that all frames sent at start_us take part in the arbitration */
     }
     if ((bus->alone | bus->recovering) != 0) {
         const uint64_t aside_us = aside_due_us(bus);

@@ -32,7 +32,7 @@ static bool use_one_error(uint32_t *count) {
 
 static bool spoiled_by_sender(sim_bus_t *bus) {
     bool spoiled = false;
-    for (uint32_t set = bus->corrupting & bus->senders; set != 0; set &= set - 1u) {
+    for (uint32_t set = bus->corrupting & bus->senders; set != 0; set &= set - 1) {
         const unsigned number = sim_lowest(set);
         if (use_one_error(&bus->nodes[number].corrupt_sent)) {
             spoiled = true;
@@ -46,7 +46,7 @@ static bool spoiled_by_sender(sim_bus_t *bus) {
 /* An error-active receiver that misreads a frame destroys it for all nodes; an error-passive one only loses it. */
 static bool spoiled_by_receiver(sim_bus_t *bus) {
     bool spoiled = false;
-    for (uint32_t set = bus->misreading & bus->hearing; set != 0; set &= set - 1u) {
+    for (uint32_t set = bus->misreading & bus->hearing; set != 0; set &= set - 1) {
         const unsigned number = sim_lowest(set);
         if (!use_one_error(&bus->nodes[number].corrupt_received)) {
             bus->misreading &= ~sim_bit(number);

@@ -86,7 +86,7 @@ bool sim_store_append(sim_store_t *store, const void *record, size_t size) {
         return false;
     }
     if (store->count == store->capacity) {
-        store->first = (store->first + 1u) % store->capacity;
+        store->first = (store->first + 1) % store->capacity;
         store->count--;
     }
     sim_store_record_t *slot = record_at(store, store->count++);

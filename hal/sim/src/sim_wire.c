@@ -3,7 +3,7 @@
 
 /* The nodes that may start now: those whose suspend time is over. */
 static uint32_t nodes_that_may_start(sim_bus_t *bus) {
-    for (uint32_t set = bus->suspended; set != 0; set &= set - 1u) {
+    for (uint32_t set = bus->suspended; set != 0; set &= set - 1) {
         const unsigned number = sim_lowest(set);
         if (bus->nodes[number].suspend_until_us <= bus->now_us) {
             bus->suspended &= ~sim_bit(number);
@@ -16,7 +16,7 @@ static uint32_t nodes_that_may_start(sim_bus_t *bus) {
 static uint32_t arbitrate(sim_bus_t *bus) {
     uint32_t lowest_key = UINT32_MAX;
     uint32_t winners = 0;
-    for (uint32_t set = nodes_that_may_start(bus); set != 0; set &= set - 1u) {
+    for (uint32_t set = nodes_that_may_start(bus); set != 0; set &= set - 1) {
         const unsigned number = sim_lowest(set);
         sim_bus_node_state_t *node = &bus->nodes[number];
         const unsigned slot = sim_bus_choose(node);
@@ -40,7 +40,7 @@ static const hal_can_frame_t *current_frame(const sim_bus_t *bus, unsigned numbe
 /* The nodes of a set whose bit @p index of the body is recessive. */
 static uint32_t recessive_at(const sim_bus_t *bus, uint32_t set, uint32_t index) {
     uint32_t recessive = 0;
-    for (; set != 0; set &= set - 1u) {
+    for (; set != 0; set &= set - 1) {
         const unsigned number = sim_lowest(set);
         if (sim_frame_bit(current_frame(bus, number), index)) {
             recessive |= sim_bit(number);
@@ -50,7 +50,7 @@ static uint32_t recessive_at(const sim_bus_t *bus, uint32_t set, uint32_t index)
 }
 
 static bool is_any_error_active(const sim_bus_t *bus, uint32_t set) {
-    for (; set != 0; set &= set - 1u) {
+    for (; set != 0; set &= set - 1) {
         if (!sim_is_passive(&bus->nodes[sim_lowest(set)])) {
             return true;
         }
@@ -65,7 +65,7 @@ static bool is_any_error_active(const sim_bus_t *bus, uint32_t set) {
  * @return bits up to and including the error; 0 = the frame of the remaining senders is sent
  */
 static uint32_t resolve_collision(sim_bus_t *bus) {
-    for (uint32_t index = 0; (bus->senders & (bus->senders - 1u)) != 0; index++) {
+    for (uint32_t index = 0; (bus->senders & (bus->senders - 1)) != 0; index++) {
         const hal_can_frame_t *frame = current_frame(bus, sim_lowest(bus->senders));
         if (index == sim_frame_body_bits(frame)) {
             break; /* all bits are equal, so the CRC is, too */
@@ -75,8 +75,8 @@ static uint32_t resolve_collision(sim_bus_t *bus) {
             continue;
         }
         if (is_any_error_active(bus, recessive)) {
-            const uint32_t bits = sim_frame_header_bits(frame) + index + 1u;
-            return bits + (bits - 1u) / 4u;
+            const uint32_t bits = sim_frame_header_bits(frame) + index + 1;
+            return bits + (bits - 1) / 4;
         }
         bus->dropped |= recessive;
         bus->senders &= ~recessive;
@@ -155,10 +155,10 @@ static void sent(sim_bus_t *bus, unsigned number) {
 }
 
 static void complete_frame(sim_bus_t *bus, uint32_t senders, uint32_t hearing) {
-    for (uint32_t set = senders; set != 0; set &= set - 1u) {
+    for (uint32_t set = senders; set != 0; set &= set - 1) {
         sent(bus, sim_lowest(set));
     }
-    for (uint32_t set = hearing; set != 0; set &= set - 1u) {
+    for (uint32_t set = hearing; set != 0; set &= set - 1) {
         sim_bus_node_state_t *node = &bus->nodes[sim_lowest(set)];
         if (node->rec > SIM_PASSIVE_ABOVE) {
             node->rec = SIM_PASSIVE_ABOVE;
@@ -166,14 +166,14 @@ static void complete_frame(sim_bus_t *bus, uint32_t senders, uint32_t hearing) {
             node->rec--;
         }
         /* An earlier callback may have switched the node off. */
-        if ((bus->listening & set & (0u - set)) != 0) {
+        if ((bus->listening & set & (0 - set)) != 0) {
             sim_bus_arrive(node, &bus->frame, bus->now_us);
         }
     }
 }
 
 static void fail_frame(sim_bus_t *bus, uint32_t senders, uint32_t hearing) {
-    for (uint32_t set = senders; set != 0; set &= set - 1u) {
+    for (uint32_t set = senders; set != 0; set &= set - 1) {
         const unsigned number = sim_lowest(set);
         sim_bus_node_state_t *node = &bus->nodes[number];
         if (node->current_aborted) {
@@ -187,18 +187,18 @@ static void fail_frame(sim_bus_t *bus, uint32_t senders, uint32_t hearing) {
         }
         suspend_sender(bus, number);
     }
-    for (uint32_t set = hearing; set != 0; set &= set - 1u) {
-        sim_bus_misread(&bus->nodes[sim_lowest(set)], 1u);
+    for (uint32_t set = hearing; set != 0; set &= set - 1) {
+        sim_bus_misread(&bus->nodes[sim_lowest(set)], 1);
     }
 }
 
 /* Count the errors of nodes that misread the frame or dropped out of a collision. */
 static void count_errors_of_receivers(sim_bus_t *bus, uint32_t hearing) {
-    for (uint32_t set = bus->misread; set != 0; set &= set - 1u) {
+    for (uint32_t set = bus->misread; set != 0; set &= set - 1) {
         const unsigned number = sim_lowest(set);
-        sim_bus_misread(&bus->nodes[number], (hearing & sim_bit(number)) != 0 ? 8u : 1u);
+        sim_bus_misread(&bus->nodes[number], (hearing & sim_bit(number)) != 0 ? 8 : 1);
     }
-    for (uint32_t set = bus->dropped & bus->listening; set != 0; set &= set - 1u) {
+    for (uint32_t set = bus->dropped & bus->listening; set != 0; set &= set - 1) {
         sim_bus_penalise(bus, sim_lowest(set));
         suspend_sender(bus, sim_lowest(set));
     }
@@ -209,7 +209,7 @@ static void finish(sim_bus_t *bus) {
     const uint32_t hearing = bus->hearing;
     bus->now_us = bus->end_us;
     bus->free_us = bus->end_us + (uint64_t)SIM_BUS_INTERFRAME_BITS * bus->bit_us;
-    bus->frame.time_ms = (uint32_t)(bus->now_us / 1000u);
+    bus->frame.time_ms = (uint32_t)(bus->now_us / 1000);
     if (senders == 0) {
         bus->outcome = SIM_BUS_DESTROYED; /* its sender was switched off or unplugged */
     } else if (hearing == 0 && bus->outcome == SIM_BUS_ARRIVES) {

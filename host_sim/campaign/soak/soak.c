@@ -19,7 +19,7 @@ enum { LOOK_EVERY_MS = 1000, SAVE_EVERY_MS = 6 * 3600000, HOURS_PER_DAY = 24 };
 /** Whether a row's steps make sense in this topology. */
 static bool fits(const soak_t *soak, const soak_row_t *row) {
     const uint32_t other = soak->gateway ? SOAK_SHARED : SOAK_GATEWAY;
-    return (row->flags & other) == 0u;
+    return (row->flags & other) == 0;
 }
 
 static uint32_t add_steps(soak_t *soak, const char *words, uint32_t number) {
@@ -35,14 +35,14 @@ static uint32_t add_steps(soak_t *soak, const char *words, uint32_t number) {
 
 /** All steps of all rows are read as those of one scenario, in their order. */
 static bool read_rows(soak_t *soak) {
-    uint32_t number = 0u;
+    uint32_t number = 0;
 
     text_add(&soak->text, "name: soak\nshows: [TIM-1]\ntopology: %s\nid_set: %s\nclock_start_ms: %" PRIu32 "\n",
              soak->gateway ? "gateway" : "shared", soak->table_ids ? "table" : "heading", (uint32_t)soak->start_ms);
     text_add(&soak->text, "config: {status_frame_id: %u, status_frame_period_ms: %u}\n", SOAK_STATUS_ID,
              SOAK_STATUS_MS);
     text_add(&soak->text, "duration_ms: 1000\nsteps:\n");
-    for (size_t i = 0u; i < SOAK_ROW_COUNT; i++) {
+    for (size_t i = 0; i < SOAK_ROW_COUNT; i++) {
         soak->steps[i].begin = number;
         number = fits(soak, &SOAK_ROWS[i]) ? add_steps(soak, SOAK_ROWS[i].begin, number) : number;
         soak->steps[i].end = number;
@@ -68,17 +68,17 @@ static bool may_come(const soak_t *soak, const soak_row_t *row) {
     scenario_testbed_view_t view;
     scenario_testbed_view(&soak->testbed, &view);
     const uint32_t other = view.vehicle.autopilot ? SOAK_MANUAL : SOAK_ENGAGED;
-    return fits(soak, row) && ((row->flags & other) == 0u);
+    return fits(soak, row) && ((row->flags & other) == 0);
 }
 
 static uint32_t choose(soak_t *soak) {
-    uint32_t weight = 0u;
-    for (size_t i = 0u; i < SOAK_ROW_COUNT; i++) {
-        weight += may_come(soak, &SOAK_ROWS[i]) ? SOAK_ROWS[i].weight : 0u;
+    uint32_t weight = 0;
+    for (size_t i = 0; i < SOAK_ROW_COUNT; i++) {
+        weight += may_come(soak, &SOAK_ROWS[i]) ? SOAK_ROWS[i].weight : 0;
     }
-    uint32_t left = prng_draw(&soak->state.random, 1u, weight);
-    for (uint32_t i = 0u;; i++) {
-        const uint32_t own = may_come(soak, &SOAK_ROWS[i]) ? SOAK_ROWS[i].weight : 0u;
+    uint32_t left = prng_draw(&soak->state.random, 1, weight);
+    for (uint32_t i = 0;; i++) {
+        const uint32_t own = may_come(soak, &SOAK_ROWS[i]) ? SOAK_ROWS[i].weight : 0;
         if (left <= own) {
             return i;
         }
@@ -117,7 +117,7 @@ static void count_real_time(soak_t *soak) {
 static bool check_each_second(soak_t *soak) {
     progress_show(&soak->progress, soak->state.t_ms / LOOK_EVERY_MS, "simulated seconds");
     soak->went = interrupt_pending() ? INTERRUPTED : OVER;
-    if ((soak->went == INTERRUPTED) || ((soak->state.t_ms % SAVE_EVERY_MS) == 0u)) {
+    if ((soak->went == INTERRUPTED) || ((soak->state.t_ms % SAVE_EVERY_MS) == 0)) {
         count_real_time(soak);
         soak->went = soak_save(soak) ? soak->went : UNSAVED;
     }
@@ -128,17 +128,17 @@ static bool after_tick(void *ctx, uint64_t t_ms) {
     soak_t *soak = ctx;
 
     soak_check_tick(soak);
-    if ((t_ms % SOAK_MS_PER_HOUR) == SOAK_MS_PER_HOUR - 1u) {
+    if ((t_ms % SOAK_MS_PER_HOUR) == SOAK_MS_PER_HOUR - 1) {
         soak_check_counters(soak);
     }
-    soak->state.t_ms = t_ms + 1u;
-    return (((soak->state.t_ms % LOOK_EVERY_MS) != 0u) || check_each_second(soak)) && (soak->state.broken[0] == '\0');
+    soak->state.t_ms = t_ms + 1;
+    return (((soak->state.t_ms % LOOK_EVERY_MS) != 0) || check_each_second(soak)) && (soak->state.broken[0] == '\0');
 }
 
 /** Until the end, or something is broken. */
 static void run_until_end(soak_t *soak) {
     const scenario_play_t play = {.from_ms = soak->state.t_ms,
-                                  .until_ms = soak->duration_ms - 1u,
+                                  .until_ms = soak->duration_ms - 1,
                                   .before_tick = begin_or_end_disturbance,
                                   .after_tick = after_tick,
                                   .ctx = soak};
@@ -154,21 +154,21 @@ static void run_until_end(soak_t *soak) {
 }
 
 static uint64_t count_disturbances(const soak_state_t *state) {
-    uint64_t sum = 0u;
-    for (size_t i = 0u; i < SOAK_ROW_COUNT; i++) {
+    uint64_t sum = 0;
+    for (size_t i = 0; i < SOAK_ROW_COUNT; i++) {
         sum += state->counts[i];
     }
     return sum;
 }
 
 static uint32_t clock_wraps(const soak_t *soak) {
-    return (uint32_t)(((soak->start_ms + soak->state.t_ms) >> 32u) - (soak->start_ms >> 32u));
+    return (uint32_t)(((soak->start_ms + soak->state.t_ms) >> 32) - (soak->start_ms >> 32));
 }
 
 static void print_result(const soak_t *soak) {
     const soak_state_t *state = &soak->state;
-    for (size_t i = 0u; i < SOAK_ROW_COUNT; i++) {
-        if (state->counts[i] > 0u) {
+    for (size_t i = 0; i < SOAK_ROW_COUNT; i++) {
+        if (state->counts[i] > 0) {
             (void)printf("%-26s %8" PRIu64 "\n", SOAK_ROWS[i].name, state->counts[i]);
         }
     }
@@ -176,7 +176,7 @@ static void print_result(const soak_t *soak) {
                  " frames received, %" PRIu64 " sent, %" PRIu64 " warnings, %" PRIu64
                  " disturbances, status frames at most %" PRIu32 " ms late; took %" PRIu64 " s\n",
                  soak->gateway ? "gateway" : "shared bus", state->t_ms / SOAK_MS_PER_HOUR / HOURS_PER_DAY,
-                 (state->t_ms / SOAK_MS_PER_HOUR % HOURS_PER_DAY) * 100u / HOURS_PER_DAY, clock_wraps(soak),
+                 (state->t_ms / SOAK_MS_PER_HOUR % HOURS_PER_DAY) * 100 / HOURS_PER_DAY, clock_wraps(soak),
                  state->ticks, state->wire_others + state->delivered, state->wire_own, state->warnings,
                  count_disturbances(state), state->status_late_ms, state->real_ms / MS_PER_S);
     if (state->broken[0] != '\0') {
@@ -226,13 +226,13 @@ static status_t conclude(soak_t *soak) {
 
 static bool prepare(soak_t *soak, const soak_request_t *request) {
     const uint64_t all_ms = (uint64_t)request->hours * SOAK_MS_PER_HOUR;
-    uint64_t random = request->seed ^ ((uint64_t)request->shard << 32u);
+    uint64_t random = request->seed ^ ((uint64_t)request->shard << 32);
 
     soak->request = request;
-    soak->start_ms = all_ms * (request->shard - 1u) / request->shards;
+    soak->start_ms = all_ms * (request->shard - 1) / request->shards;
     soak->duration_ms = (all_ms * request->shard / request->shards) - soak->start_ms;
-    soak->gateway = (request->shard % 2u) == 0u;
-    soak->table_ids = (prng_next(&random) % 2u) == 0u;
+    soak->gateway = (request->shard % 2) == 0;
+    soak->table_ids = (prng_next(&random) % 2) == 0;
     soak->state.random = prng_next(&random);
     soak->state.row = (uint32_t)SOAK_ROW_COUNT;
     soak->state.next_ms = READY_MS;
@@ -250,7 +250,7 @@ static bool prepare(soak_t *soak, const soak_request_t *request) {
 }
 
 status_t soak_run(const soak_request_t *request) {
-    soak_t *soak = calloc(1u, sizeof *soak);
+    soak_t *soak = calloc(1, sizeof *soak);
     status_t status = STATUS_UNUSABLE;
 
     if (soak == NULL) {

@@ -32,17 +32,17 @@ static const char *present_row(const soak_t *soak) {
 
 static void on_state(soak_t *soak, uint64_t t_ms, const agv_event_t *event) {
     soak_state_t *state = &soak->state;
-    const bool well = (event->b == (uint8_t)AGV_STATE_STANDBY) || (event->b == (uint8_t)AGV_STATE_ACTIVE);
+    const bool well = (event->b == AGV_STATE_STANDBY) || (event->b == AGV_STATE_ACTIVE);
 
     if (state->ready && !well) {
         const char *reason = agv_fault_name((agv_fault_t)event->c);
         soak_break(soak, "%s at %" PRIu64 " ms, because of %s, in: %s", agv_state_name((agv_state_t)event->b), t_ms,
                    (reason != NULL) ? reason : "nothing", present_row(soak));
     }
-    if (!state->ready && (event->b == (uint8_t)AGV_STATE_STANDBY)) {
+    if (!state->ready && (event->b == AGV_STATE_STANDBY)) {
         state->ready = true;
         state->ready_ms = t_ms;
-        state->ticks_before = state->ticks + 1u; /* the event is reported after its tick */
+        state->ticks_before = state->ticks + 1; /* the event is reported after its tick */
         scenario_testbed_view_t view;
         scenario_testbed_view(&soak->testbed, &view);
         state->feeds_before = view.feeds;
@@ -55,10 +55,10 @@ static void on_event(void *ctx, const session_event_t *event) {
     if (event->is_led) {
         return;
     }
-    if (recorded->kind == (uint8_t)AGV_EVENT_STATE) {
+    if (recorded->kind == AGV_EVENT_STATE) {
         on_state(soak, event->t_ms, recorded);
-    } else if ((recorded->kind == (uint8_t)AGV_EVENT_FAULT) && (recorded->c != 0u)) {
-        if (recorded->b == (uint8_t)AGV_CLASS_WARN) {
+    } else if ((recorded->kind == AGV_EVENT_FAULT) && (recorded->c != 0)) {
+        if (recorded->b == AGV_CLASS_WARN) {
             soak->state.warnings++;
         } else if (soak->state.ready) {
             soak_break(soak, "%s at %" PRIu64 " ms, in: %s", agv_fault_name((agv_fault_t)recorded->a), event->t_ms,
@@ -101,7 +101,7 @@ static void check_status(soak_t *soak, uint64_t t_us, const hal_can_frame_t *fra
     } else {
         check_slot(soak, t_ms);
     }
-    if ((state->status_last_ms != 0u) && (steps != 1u) && (steps != 2u)) {
+    if ((state->status_last_ms != 0) && (steps != 1) && (steps != 2)) {
         soak_break(soak, "the status frame at %" PRIu64 " ms carries the counter %u, the last one %u", t_ms,
                    frame->data[3], state->status_counter);
     }
@@ -149,8 +149,8 @@ static void check_count(soak_t *soak, const char *what, uint64_t counted, uint64
 
 /** Frames that the supervisor handed over and took back (TOP-2: at the end of an engagement). */
 static uint64_t count_purged(const soak_t *soak) {
-    uint64_t purged = 0u;
-    for (unsigned side = 0u; side < (unsigned)HAL_CAN_SIDES; side++) {
+    uint64_t purged = 0;
+    for (unsigned side = 0; side < HAL_CAN_SIDES; side++) {
         sim_bus_stats_t stats;
         scenario_testbed_bus_stats(&soak->testbed, (hal_can_side_t)side, &stats);
         purged += stats.purged;
@@ -168,15 +168,15 @@ void soak_check_counters(soak_t *soak) {
     if (view.is_halted) {
         return; /* frames wait: the next time */
     }
-    check_count(soak, "frames received", counters->received, state->wire_others + state->delivered, 0u);
-    check_count(soak, "frames received, by the port", view.received, state->wire_others + state->delivered, 0u);
+    check_count(soak, "frames received", counters->received, state->wire_others + state->delivered, 0);
+    check_count(soak, "frames received, by the port", view.received, state->wire_others + state->delivered, 0);
     check_count(soak, "frames sent", counters->sent, state->wire_own + count_purged(soak), WAITING_MAX);
-    check_count(soak, "warnings", counters->warnings, state->warnings, 0u);
-    check_count(soak, "refused by the gate", counters->gate_refused, 0u, 0u);
-    check_count(soak, "watchdog resets", view.bites, 0u, 0u);
+    check_count(soak, "warnings", counters->warnings, state->warnings, 0);
+    check_count(soak, "refused by the gate", counters->gate_refused, 0, 0);
+    check_count(soak, "watchdog resets", view.bites, 0, 0);
     check_count(soak, "feeds of the watchdog", (uint64_t)view.feeds - state->feeds_before,
-                state->ticks - state->ticks_before, 0u);
-    check_count(soak, "the supervisor's clock", agv_supervisor_tick_ms(supervisor), soak->start_ms + view.t_ms, 0u);
+                state->ticks - state->ticks_before, 0);
+    check_count(soak, "the supervisor's clock", agv_supervisor_tick_ms(supervisor), soak->start_ms + view.t_ms, 0);
     const uint64_t slots = (state->t_ms - state->status_ms) / SOAK_STATUS_MS;
-    check_count(soak, "status frames", slots + 1u, state->status_frames, 2u);
+    check_count(soak, "status frames", slots + 1, state->status_frames, 2);
 }

@@ -20,7 +20,7 @@ static bool identify_program(soak_t *soak) {
     }
     soak->program = AGV_CRC32_START;
     while ((feof(stream) == 0) && (ferror(stream) == 0)) {
-        const size_t length = fread(chunk, 1u, sizeof chunk, stream);
+        const size_t length = fread(chunk, 1, sizeof chunk, stream);
         soak->program = agv_crc32(soak->program, chunk, length);
     }
     const bool good = ferror(stream) == 0;

@@ -26,7 +26,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_TEXT("--results", "FILE", "results of each pair, and of each of the two alone, as JSON Lines",
                     &given->results),
         OPTION_NUMBER("--show", "CASE", "only print this case, as a scenario", &given->show, 0,
-                      (uint64_t)atlas_case_count() - 1u),
+                      (uint64_t)atlas_case_count() - 1),
     };
     const option_group_t groups[] = {{.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]}};
     static const option_example_t examples[] = {
@@ -44,18 +44,18 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
     };
-    size_t operands = 0u; /* none: they are refused */
+    size_t operands = 0; /* none: they are refused */
     return options_parse(&syntax, argc, argv, &operands);
 }
 
 static bool make_request(const given_t *given, atlas_request_t *request) {
-    *request = (atlas_request_t){.shard = 1u, .shards = 1u, .results = given->results};
+    *request = (atlas_request_t){.shard = 1, .shards = 1, .results = given->results};
     request->shows_one = given->show != OPTION_NOT_GIVEN;
     if (request->shows_one &&
         ((given->results != NULL) || (given->shard != NULL) || (given->first != NULL) || (given->second != NULL))) {
         return report("--show prints one case: --results, --shard, --first and --second cannot be combined with it");
     }
-    request->one = request->shows_one ? (uint32_t)given->show : 0u;
+    request->one = request->shows_one ? (uint32_t)given->show : 0;
     return ((given->shard == NULL) || random_options_shard(given->shard, &request->shard, &request->shards)) &&
            fault_option_take("--first", given->first, &request->first) &&
            fault_option_take("--second", given->second, &request->second);

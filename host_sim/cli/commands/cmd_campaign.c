@@ -46,7 +46,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_TEXT("--why", "FILE", "the JSON of replay --why for each run, one line each", &given->request.why),
         OPTION_TEXT("--broken", "FOLDER", "folder for the scenarios of runs that break an invariant (.)",
                     &given->folder),
-        OPTION_NUMBER("--show", "RUN", "only print this run, as a scenario", &given->show, 0, RUNS_MAX - 1u),
+        OPTION_NUMBER("--show", "RUN", "only print this run, as a scenario", &given->show, 0, RUNS_MAX - 1),
         OPTION_FLAG("--merge", "merge the results of all shards into one table, and into one file with --results",
                     &given->merge),
         OPTION_FLAG("--tables", "print the data from which reaction times are derived, as JSON", &given->tables),
@@ -86,7 +86,7 @@ static bool take_fault(const char *name, campaign_causes_t *causes) {
 static bool make_request(given_t *given, char **operands) {
     campaign_request_t *request = &given->request;
 
-    if (given->file_count > 0u) {
+    if (given->file_count > 0) {
         return report("unexpected argument '%s'; only --merge takes files", operands[0]);
     }
     if (given->runs == OPTION_NOT_GIVEN) {
@@ -105,7 +105,7 @@ static bool make_request(given_t *given, char **operands) {
         return report("--show prints one run: --results, --why and --shard cannot be combined with it");
     }
     if (request->shows_one && (given->show >= given->runs)) {
-        return report("--show: no run %" PRIu64 "; the runs are 0 to %" PRIu64, given->show, given->runs - 1u);
+        return report("--show: no run %" PRIu64 "; the runs are 0 to %" PRIu64, given->show, given->runs - 1);
     }
     const output_role_t roles[] = {{.role = "--results", .path = request->results, .is_written = true},
                                    {.role = "--why", .path = request->why, .is_written = true}};
@@ -121,13 +121,13 @@ static bool has_run_options(const given_t *given) {
 }
 
 static bool check_merge(const given_t *given, char **files) {
-    if (given->file_count == 0u) {
+    if (given->file_count == 0) {
         return report("--merge: FILE is missing; see host_sim campaign --help");
     }
     if (has_run_options(given)) {
         return report("--merge takes files, and of the other options only --results");
     }
-    for (size_t i = 0u; i < given->file_count; i++) {
+    for (size_t i = 0; i < given->file_count; i++) {
         const output_role_t roles[] = {{.role = "FILE", .path = files[i]},
                                        {.role = "--results", .path = given->results, .is_written = true}};
         if (!output_check_distinct(roles, sizeof roles / sizeof roles[0])) {
@@ -139,7 +139,7 @@ static bool check_merge(const given_t *given, char **files) {
 
 static status_t merge(const given_t *given, char **files) {
     campaign_samples_t samples = {0};
-    output_t *merged = calloc(1u, sizeof *merged);
+    output_t *merged = calloc(1, sizeof *merged);
     status_t status = STATUS_UNUSABLE;
 
     if (merged == NULL) {
@@ -150,7 +150,7 @@ static status_t merge(const given_t *given, char **files) {
         campaign_merge(files, given->file_count, &samples, merged) && output_commit(merged) &&
         (output_is_stdout(given->results) || campaign_print_table(&samples))) {
         status = STATUS_OK;
-        for (size_t i = 0u; i < samples.count; i++) {
+        for (size_t i = 0; i < samples.count; i++) {
             status = samples.samples[i].broken ? STATUS_UNMET : status;
         }
     }
@@ -162,11 +162,11 @@ static status_t merge(const given_t *given, char **files) {
 }
 
 static status_t print_tables(const given_t *given) {
-    if (has_run_options(given) || given->merge || (given->results != NULL) || (given->file_count > 0u)) {
+    if (has_run_options(given) || given->merge || (given->results != NULL) || (given->file_count > 0)) {
         (void)report("--tables runs nothing: no other option and no file can be combined with it");
         return STATUS_UNUSABLE;
     }
-    output_t *output = calloc(1u, sizeof *output);
+    output_t *output = calloc(1, sizeof *output);
     const bool good =
         ((output != NULL) || report("out of memory")) && output_open(output, "-") && campaign_print_tables(output);
     const bool written = good && output_commit(output);

@@ -23,14 +23,14 @@ status_t cmd_completion(int argc, char **argv) {
         .summary =
             "Print a script that completes command lines of host_sim in a shell. Installation sets it up. To use\n"
             "it in the current shell: source <(host_sim completion bash)\n",
-        .operands_min = 1u,
-        .operands_max = 1u,
+        .operands_min = 1,
+        .operands_max = 1,
         .operand = "SHELL",
         .words = SHELLS,
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
     };
-    size_t operands = 0u;
+    size_t operands = 0;
     const options_result_t parsed = options_parse(&syntax, argc, argv, &operands);
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;

@@ -64,7 +64,7 @@ status_t cmd_config(int argc, char **argv) {
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
     };
-    size_t operands = 0u;
+    size_t operands = 0;
     const options_result_t parsed = options_parse(&syntax, argc, argv, &operands);
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;

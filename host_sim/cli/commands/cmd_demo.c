@@ -84,7 +84,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
     };
-    size_t operands = 0u;
+    size_t operands = 0;
     return options_parse(&syntax, argc, argv, &operands);
 }
 
@@ -142,7 +142,7 @@ static status_t print_result(const work_t *work, bool good) {
         return STATUS_OK;
     }
     (void)fprintf(work->text_out, "%sExpectations FAILED, %s:\n", space, work->path);
-    for (size_t i = 0u; (i < check->failure_count) && (i < SCENARIO_FAILURES_MAX); i++) {
+    for (size_t i = 0; (i < check->failure_count) && (i < SCENARIO_FAILURES_MAX); i++) {
         (void)fprintf(work->text_out, "  %s\n", check->failures[i]);
     }
     return STATUS_UNMET;
@@ -174,7 +174,7 @@ static bool finish(work_t *work) {
     if (work->analysis != NULL) {
         analysis_end(work->analysis, session->t_ms * US_PER_MS);
         analysis_write(work->analysis);
-        return output_flush_all(&work->events, 1u) && analysis_commit(work->analysis) && output_commit(&work->events);
+        return output_flush_all(&work->events, 1) && analysis_commit(work->analysis) && output_commit(&work->events);
     }
     return output_commit(&work->events);
 }
@@ -185,7 +185,7 @@ static status_t play(work_t *work, const given_t *given) {
     }
     config_note_deviations(&work->options.config);
     scenario_watch_t watches[3];
-    size_t count = 0u;
+    size_t count = 0;
     const bool is_told = !output_is_stdout(given->events) && !analysis_paths_use_stdout(&given->analysis);
     work->text_out = is_told ? stdout : stderr;
     if (is_told) {
@@ -225,7 +225,7 @@ status_t cmd_demo(int argc, char **argv) {
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
-    work_t *work = calloc(1u, sizeof *work);
+    work_t *work = calloc(1, sizeof *work);
     if (work == NULL) {
         (void)report("out of memory");
         return STATUS_UNUSABLE;

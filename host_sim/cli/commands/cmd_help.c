@@ -13,18 +13,18 @@ status_t cmd_help(int argc, char **argv) {
     const option_syntax_t syntax = {
         .usage = "help [COMMAND]",
         .summary = "Print the help of a command, like host_sim COMMAND --help, or the list of commands.\n",
-        .operands_max = 1u,
+        .operands_max = 1,
         .operand = "COMMAND",
         .words = command_words(),
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
     };
-    size_t operands = 0u;
+    size_t operands = 0;
     const options_result_t parsed = options_parse(&syntax, argc, argv, &operands);
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
-    if (operands == 0u) {
+    if (operands == 0) {
         command_print_help();
         return STATUS_OK;
     }

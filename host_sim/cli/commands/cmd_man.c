@@ -36,7 +36,7 @@ static void print_text(const char *text) {
 static void print_paragraphs(const char *text) {
     for (const char *at = text; *at != '\0';) {
         const size_t length = strcspn(at, "\n");
-        if (length == 0u) {
+        if (length == 0) {
             (void)printf(".PP\n");
         } else {
             char line[256];
@@ -44,7 +44,7 @@ static void print_paragraphs(const char *text) {
             print_text(line);
             (void)printf("\n");
         }
-        at += length + ((at[length] == '\n') ? 1u : 0u);
+        at += length + ((at[length] == '\n') ? 1 : 0);
     }
 }
 
@@ -75,25 +75,25 @@ static void print_option(const option_t *option) {
 }
 
 static void print_options(const option_syntax_t *syntax) {
-    for (size_t g = 0u; g < syntax->group_count; g++) {
+    for (size_t g = 0; g < syntax->group_count; g++) {
         const option_group_t *group = &syntax->groups[g];
         if ((group->title != NULL) && (strcmp(group->title, "Options") != 0)) {
             (void)printf(".SS ");
             print_text(group->title);
             (void)printf("\n");
         }
-        for (size_t i = 0u; i < group->count; i++) {
+        for (size_t i = 0; i < group->count; i++) {
             print_option(&group->options[i]);
         }
     }
 }
 
 static void print_examples(const option_syntax_t *syntax) {
-    if (syntax->example_count == 0u) {
+    if (syntax->example_count == 0) {
         return;
     }
     (void)printf(".SH EXAMPLES\n");
-    for (size_t i = 0u; i < syntax->example_count; i++) {
+    for (size_t i = 0; i < syntax->example_count; i++) {
         char line[512];
         options_example_line(&syntax->examples[i], SHIPPED_PACKAGE, line, sizeof line);
         (void)printf(".TP\n\\fB");
@@ -106,7 +106,7 @@ static void print_examples(const option_syntax_t *syntax) {
 
 static void print_exit_statuses(void) {
     (void)printf(".SH EXIT STATUS\n");
-    for (size_t i = 0u; i < EXIT_STATUS_COUNT; i++) {
+    for (size_t i = 0; i < EXIT_STATUS_COUNT; i++) {
         (void)printf(".TP\n\\fB%d\\fR\n", (int)EXIT_STATUSES[i].status);
         print_text(EXIT_STATUSES[i].means);
         (void)printf("\n");
@@ -146,7 +146,7 @@ static void print_program(void) {
                  "recorded log, or\n"
                  "as a node on SocketCAN.\n"
                  ".SH COMMANDS\n");
-    for (size_t i = 0u; i < COMMAND_COUNT; i++) {
+    for (size_t i = 0; i < COMMAND_COUNT; i++) {
         (void)printf(".TP\n.BR host_sim\\-%s (1)\n", COMMANDS[i].name);
         print_text(COMMANDS[i].help);
         (void)printf("\n");
@@ -178,19 +178,19 @@ status_t cmd_man(int argc, char **argv) {
     const option_syntax_t syntax = {
         .usage = "man [COMMAND]",
         .summary = "Print the man page of a command, or of the program. An installed host_sim has them in place.\n",
-        .operands_max = 1u,
+        .operands_max = 1,
         .operand = "COMMAND",
         .words = command_words(),
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
     };
-    size_t operands = 0u;
+    size_t operands = 0;
     const options_result_t parsed = options_parse(&syntax, argc, argv, &operands);
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
     const command_t *command = NULL;
-    if (operands > 0u) {
+    if (operands > 0) {
         command = command_find(argv[0]);
         if (command == NULL) {
             return STATUS_UNUSABLE;

@@ -91,13 +91,13 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
     };
-    size_t operands = 0u;
+    size_t operands = 0;
     return options_parse(&syntax, argc, argv, &operands);
 }
 
 static bool check_log(const given_t *given) {
     const monitor_request_t *request = &given->request;
-    const bool is_gateway = request->config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    const bool is_gateway = request->config.topology == AGV_TOPOLOGY_GATEWAY;
     if ((given->request.bus.interfaces[HAL_CAN_VEHICLE] != NULL) ||
         (given->request.bus.interfaces[HAL_CAN_AI] != NULL)) {
         return report("--log and --can exclude each other");
@@ -128,7 +128,7 @@ static bool check_bus(const given_t *given) {
         return report("--can or --log is missing: what to watch; see host_sim monitor --help");
     }
     return interface_options_check(&given->request.bus, "monitor",
-                                   given->request.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY);
+                                   given->request.config.topology == AGV_TOPOLOGY_GATEWAY);
 }
 
 /** Before the bus is opened. */

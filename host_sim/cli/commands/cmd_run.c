@@ -61,7 +61,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
     };
-    size_t operands = 0u;
+    size_t operands = 0;
     return options_parse(&syntax, argc, argv, &operands);
 }
 

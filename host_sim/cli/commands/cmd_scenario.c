@@ -119,7 +119,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
 }
 
 static bool check_files(const given_t *given, char **files) {
-    for (size_t i = 0u; i < given->file_count; i++) {
+    for (size_t i = 0; i < given->file_count; i++) {
         output_role_t roles[FIXED_FILES + (int)ANALYSIS_FILES] = {
             {.role = "FILE", .path = files[i]},
             {.role = "--config", .path = given->config.path},
@@ -140,7 +140,7 @@ static bool check_given(given_t *given, char **files) {
         return false;
     }
     const bool is_of_one = (given->events != NULL) || (given->bus.sent != NULL) || analysis_paths_any(&given->analysis);
-    if (is_of_one && (given->file_count > 1u)) {
+    if (is_of_one && (given->file_count > 1)) {
         return report("--events, --sent, --why, --report and --trace need a single scenario, %zu were given",
                       given->file_count);
     }
@@ -170,13 +170,13 @@ static bool check_place(const work_t *work, const char *file) {
 /** Several files are read twice, which a pipe cannot be. One that is not there is for who reads it. */
 static bool check_readable_twice(const given_t *given, const char *file) {
     struct stat found;
-    return (given->file_count == 1u) || (stat(file, &found) != 0) || S_ISREG(found.st_mode) ||
+    return (given->file_count == 1) || (stat(file, &found) != 0) || S_ISREG(found.st_mode) ||
            report("%s: not a regular file, which is needed to run several scenarios", file);
 }
 
 /** Read every file once, so that nothing runs when one of them makes no sense. @return NULL: all do; else that one */
 static const char *find_unusable(work_t *work, char **files) {
-    for (size_t i = 0u; i < work->given.file_count; i++) {
+    for (size_t i = 0; i < work->given.file_count; i++) {
         if (!check_readable_twice(&work->given, files[i]) ||
             !scenario_read(&work->run.scenario, files[i], &work->given.options) || !check_place(work, files[i])) {
             return files[i];
@@ -191,12 +191,12 @@ static void print_result(const work_t *work, const char *file, const result_t *r
     const char *plural = words_plural(count);
     text_t copy;
     const char *name = text_one_line(&copy, file);
-    if (result->failure_count == 0u) {
+    if (result->failure_count == 0) {
         (void)fprintf(work->text_out, "ok      %s: %zu expectation%s\n", name, count, plural);
         return;
     }
     (void)fprintf(work->text_out, "FAILED  %s: %zu of %zu expectation%s\n", name, result->failure_count, count, plural);
-    for (size_t i = 0u; (i < result->failure_count) && (i < SCENARIO_FAILURES_MAX); i++) {
+    for (size_t i = 0; (i < result->failure_count) && (i < SCENARIO_FAILURES_MAX); i++) {
         (void)fprintf(work->text_out, "        %s\n", result->failures[i]);
     }
 }
@@ -216,7 +216,7 @@ static bool open_analysis(work_t *work) {
 static void play_simulated(work_t *work, events_summary_t *summary) {
     const session_t *session = scenario_testbed_session(&work->run.testbed);
     scenario_watch_t watches[2];
-    size_t count = 0u;
+    size_t count = 0;
 
     if (work->given.events != NULL) {
         watches[count] = (scenario_watch_t){.on_event = events_write, .ctx = &work->outputs[EVENTS]};
@@ -264,7 +264,7 @@ static bool play_real(work_t *work, events_summary_t *summary, const char **left
 static bool play(work_t *work, const char *file, result_t *result) {
     events_summary_t summary = {0};
 
-    if ((work->given.file_count > 1u) && !scenario_read(&work->run.scenario, file, &work->given.options)) {
+    if ((work->given.file_count > 1) && !scenario_read(&work->run.scenario, file, &work->given.options)) {
         return false;
     }
     if (!scenario_bus_options_is_real(&work->given.bus)) {
@@ -289,9 +289,9 @@ static bool play(work_t *work, const char *file, result_t *result) {
 
 /** @param played so many files were played @param unusable what could not be played then; NULL: nothing */
 static void write_junit(work_t *work, char **files, const totals_t *totals, size_t played, const char *unusable) {
-    const size_t errors = (unusable != NULL) ? 1u : 0u;
+    const size_t errors = (unusable != NULL) ? 1 : 0;
     junit_begin(&work->outputs[JUNIT], "scenarios", totals->passed + totals->failed + errors, totals->failed, errors);
-    for (size_t i = 0u; i < played; i++) {
+    for (size_t i = 0; i < played; i++) {
         const result_t *result = &work->results[i];
         const size_t shown =
             (result->failure_count < SCENARIO_FAILURES_MAX) ? result->failure_count : SCENARIO_FAILURES_MAX;
@@ -318,7 +318,7 @@ static status_t give_up(work_t *work, char **files, const totals_t *totals, size
 static void count(totals_t *totals, const result_t *result) {
     if (result->left_out != NULL) {
         totals->left_out++;
-    } else if (result->failure_count != 0u) {
+    } else if (result->failure_count != 0) {
         totals->failed++;
     } else {
         totals->passed++;
@@ -327,7 +327,7 @@ static void count(totals_t *totals, const result_t *result) {
 
 /** The last lines: what was left out, and the sum. */
 static void print_totals(const work_t *work, char **files, const totals_t *totals) {
-    for (size_t i = 0u; i < work->given.file_count; i++) {
+    for (size_t i = 0; i < work->given.file_count; i++) {
         if (work->results[i].left_out != NULL) {
             text_t name;
             (void)fprintf(work->text_out, "left out %s: %s\n", text_one_line(&name, files[i]),
@@ -345,7 +345,7 @@ static void print_totals(const work_t *work, char **files, const totals_t *total
 static status_t play_all(work_t *work, char **files) {
     totals_t totals = {0};
 
-    for (size_t i = 0u; i < work->given.file_count; i++) {
+    for (size_t i = 0; i < work->given.file_count; i++) {
         if (!play(work, files[i], &work->results[i])) {
             return give_up(work, files, &totals, i, files[i]);
         }
@@ -362,7 +362,7 @@ static status_t play_all(work_t *work, char **files) {
         !output_commit_all(work->outputs, OUTPUTS)) {
         return STATUS_UNUSABLE;
     }
-    return (totals.failed == 0u) ? STATUS_OK : STATUS_UNMET;
+    return (totals.failed == 0) ? STATUS_OK : STATUS_UNMET;
 }
 
 static status_t run_all(work_t *work, char **files) {
@@ -374,11 +374,11 @@ static status_t run_all(work_t *work, char **files) {
     }
     const char *unusable = find_unusable(work, files);
     if (unusable != NULL) {
-        return give_up(work, files, &none, 0u, unusable);
+        return give_up(work, files, &none, 0, unusable);
     }
     if (((given->events != NULL) && !output_open(&work->outputs[EVENTS], given->events)) ||
         ((given->bus.sent != NULL) && !output_open(&work->outputs[SENT], given->bus.sent)) || !open_analysis(work)) {
-        return give_up(work, files, &none, 0u, files[0]);
+        return give_up(work, files, &none, 0, files[0]);
     }
     config_note_deviations(&given->options.config);
     return play_all(work, files);
@@ -392,7 +392,7 @@ static status_t run_none(given_t *given) {
         (void)report("%s runs no scenario, so it takes no option of a run", given->is_schema ? "--schema" : "--from");
         return STATUS_UNUSABLE;
     }
-    if (given->file_count > 0u) {
+    if (given->file_count > 0) {
         (void)report("%s takes no FILE", given->is_schema ? "--schema" : "--from");
         return STATUS_UNUSABLE;
     }
@@ -414,14 +414,14 @@ status_t cmd_scenario(int argc, char **argv) {
     if (given.is_schema || (given.from.log != NULL)) {
         return run_none(&given);
     }
-    if (given.file_count == 0u) {
+    if (given.file_count == 0) {
         (void)report("FILE is missing; see host_sim scenario --help");
         return STATUS_UNUSABLE;
     }
     if (!check_given(&given, argv)) {
         return STATUS_UNUSABLE;
     }
-    work_t *work = calloc(1u, sizeof *work + (given.file_count * sizeof work->results[0]));
+    work_t *work = calloc(1, sizeof *work + (given.file_count * sizeof work->results[0]));
     if (work == NULL) {
         (void)report("out of memory");
         return STATUS_UNUSABLE;
@@ -431,7 +431,7 @@ status_t cmd_scenario(int argc, char **argv) {
                           output_is_stdout(given.bus.sent) || analysis_paths_use_stdout(&given.analysis);
     work->text_out = is_taken ? stderr : stdout;
     const status_t status = run_all(work, argv);
-    for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
+    for (size_t i = 0; i < OUTPUTS; i++) {
         output_discard(&work->outputs[i]);
     }
     analysis_free(work->analysis);

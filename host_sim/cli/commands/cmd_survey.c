@@ -55,7 +55,7 @@ static options_result_t parse(int argc, char **argv, given_t *given, size_t *ope
         .group_count = sizeof groups / sizeof groups[0],
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
-        .operands_max = 1u,
+        .operands_max = 1,
         .operand = "LOG",
     };
     return options_parse(&syntax, argc, argv, operands);
@@ -97,12 +97,12 @@ static bool check_source(const survey_request_t *request) {
 
 status_t cmd_survey(int argc, char **argv) {
     given_t given = {.request = {.bit_rate = BIT_RATE_DEFAULT}};
-    size_t operands = 0u;
+    size_t operands = 0;
     const options_result_t parsed = parse(argc, argv, &given, &operands);
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
-    given.request.log = (operands > 0u) ? argv[0] : NULL;
+    given.request.log = (operands > 0) ? argv[0] : NULL;
     given.request.id_set_is_given = given.config.id_set != ID_SET_NOT_GIVEN;
     given.config.has_ai_side =
         (given.request.ai_interface != NULL) || (given.request.bus.interfaces[HAL_CAN_AI] != NULL);

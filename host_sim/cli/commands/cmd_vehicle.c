@@ -70,13 +70,13 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
     };
-    size_t operands = 0u;
+    size_t operands = 0;
     return options_parse(&syntax, argc, argv, &operands);
 }
 
 /** Read the faults, in the order of their time. */
 static bool make_faults(const given_t *given, vehicle_run_request_t *request) {
-    for (size_t i = 0u; i < given->fault_count; i++) {
+    for (size_t i = 0; i < given->fault_count; i++) {
         vehicle_words_t words;
         if (!vehicle_words_fault(given->faults[i], &request->config, &words)) {
             return false;
@@ -85,8 +85,8 @@ static bool make_faults(const given_t *given, vehicle_run_request_t *request) {
             return report("--fault %.80s: the time is after the end (--for)", given->faults[i]);
         }
         size_t place = i;
-        for (; (place > 0u) && (request->faults[place - 1u].step.at_ms > words.step.at_ms); place--) {
-            request->faults[place] = request->faults[place - 1u];
+        for (; (place > 0) && (request->faults[place - 1].step.at_ms > words.step.at_ms); place--) {
+            request->faults[place] = request->faults[place - 1];
         }
         request->faults[place] = words;
     }

@@ -33,9 +33,9 @@ const size_t COMMAND_COUNT = sizeof COMMANDS / sizeof COMMANDS[0];
 
 const char *command_words(void) {
     static char words[WORDS_SIZE];
-    size_t used = 0u;
-    for (size_t i = 0u; i < COMMAND_COUNT; i++) {
-        used += (size_t)snprintf(&words[used], sizeof words - used, "%s%s", (i > 0u) ? "|" : "", COMMANDS[i].name);
+    size_t used = 0;
+    for (size_t i = 0; i < COMMAND_COUNT; i++) {
+        used += (size_t)snprintf(&words[used], sizeof words - used, "%s%s", (i > 0) ? "|" : "", COMMANDS[i].name);
     }
     return words;
 }
@@ -58,7 +58,7 @@ static void refuse(const char *name) {
 }
 
 const command_t *command_find(const char *name) {
-    for (size_t i = 0u; i < COMMAND_COUNT; i++) {
+    for (size_t i = 0; i < COMMAND_COUNT; i++) {
         if (strcmp(name, COMMANDS[i].name) == 0) {
             return &COMMANDS[i];
         }
@@ -82,7 +82,7 @@ void command_print_help(void) {
                  "The safety supervisor of an AGV's CAN bus, on a computer.\n"
                  "\n"
                  "Commands:\n");
-    for (size_t i = 0u; i < COMMAND_COUNT; i++) {
+    for (size_t i = 0; i < COMMAND_COUNT; i++) {
         text_print_from(printf("  %-11s ", COMMANDS[i].name), COMMANDS[i].help);
     }
     (void)printf("\n"
@@ -92,7 +92,7 @@ void command_print_help(void) {
                  "First: host_sim demo. Then, with a log of your own: host_sim survey LOG, host_sim replay LOG\n"
                  "\n"
                  "Exit status:\n");
-    for (size_t i = 0u; i < EXIT_STATUS_COUNT; i++) {
+    for (size_t i = 0; i < EXIT_STATUS_COUNT; i++) {
         text_print_from(printf("  %d  ", (int)EXIT_STATUSES[i].status), EXIT_STATUSES[i].means);
     }
 }

@@ -36,7 +36,7 @@ bool scenario_bus_options_any(const scenario_bus_options_t *options) {
 
 /** Take the name of an interface out of --bus. */
 static bool take_interface(scenario_bus_options_t *options, hal_can_side_t side, const char *name, size_t length) {
-    if ((length == 0u) || (length > LINUX_CAN_NAME_MAX) || (memchr(name, ',', length) != NULL)) {
+    if ((length == 0) || (length > LINUX_CAN_NAME_MAX) || (memchr(name, ',', length) != NULL)) {
         return report("--bus: '%s' is not sim, IF or IF,IF", options->bus);
     }
     memcpy(options->interface_names[side], name, length);
@@ -64,7 +64,7 @@ bool scenario_bus_options_check(scenario_bus_options_t *options) {
         return is_simulated || report("--tolerance, --supervisor and --sent need CAN interfaces: --bus IF[,IF]");
     }
     const size_t length = strcspn(options->bus, ",");
-    const char *second = (options->bus[length] == ',') ? &options->bus[length + 1u] : NULL;
+    const char *second = (options->bus[length] == ',') ? &options->bus[length + 1] : NULL;
     if (!take_interface(options, HAL_CAN_VEHICLE, options->bus, length) ||
         ((second != NULL) && !take_interface(options, HAL_CAN_AI, second, strlen(second)))) {
         return false;

@@ -16,11 +16,11 @@
 
 /** What was given. Start from scenario_bus_options_init(). */
 typedef struct {
-    const char *bus;                                              /**< --bus; NULL: not given */
-    const char *supervisor;                                       /**< --supervisor; NULL: not given */
-    const char *sent;                                             /**< --sent; NULL: not given */
-    uint64_t tolerance_ms;                                        /**< --tolerance; OPTION_NOT_GIVEN */
-    char interface_names[HAL_CAN_SIDES][LINUX_CAN_NAME_MAX + 1u]; /**< "": none; no vehicle side: the simulated bus */
+    const char *bus;                                             /**< --bus; NULL: not given */
+    const char *supervisor;                                      /**< --supervisor; NULL: not given */
+    const char *sent;                                            /**< --sent; NULL: not given */
+    uint64_t tolerance_ms;                                       /**< --tolerance; OPTION_NOT_GIVEN */
+    char interface_names[HAL_CAN_SIDES][LINUX_CAN_NAME_MAX + 1]; /**< "": none; no vehicle side: the simulated bus */
 } scenario_bus_options_t;
 
 /** Nothing given. @param rows are filled in with the options; for the command's option groups */

@@ -35,10 +35,10 @@ static void list_line(companion_t *this, char *line) {
     char who[MONITOR_WHO_SIZE];
     line += strspn(line, " ");
     const size_t number = strspn(line, "0123456789.");
-    if ((number > 0u) && (strncmp(&line[number], " s  ", 4u) == 0)) {
-        line += number + 4u;
+    if ((number > 0) && (strncmp(&line[number], " s  ", 4) == 0)) {
+        line += number + 4;
         const size_t word = strcspn(line, " ");
-        (void)snprintf(who, sizeof who, "%.*s", (int)((word < sizeof who) ? word : sizeof who - 1u), line);
+        (void)snprintf(who, sizeof who, "%.*s", (int)((word < sizeof who) ? word : sizeof who - 1), line);
         line += word;
         line += strspn(line, " ");
         char *state = strstr(line, "  "); /* of the vehicle: it is on the screen */
@@ -55,8 +55,8 @@ static void list_line(companion_t *this, char *line) {
 
 static void read_text(companion_t *this) {
     struct pollfd wait = {.fd = this->ends->text, .events = POLLIN, .revents = 0};
-    for (int i = 0; (i < (int)MESSAGES_AT_ONCE) && (poll(&wait, 1, 0) > 0); i++) {
-        const size_t room = sizeof this->line - 1u - this->used;
+    for (int i = 0; (i < MESSAGES_AT_ONCE) && (poll(&wait, 1, 0) > 0); i++) {
+        const size_t room = sizeof this->line - 1 - this->used;
         const ssize_t got = read(this->ends->text, &this->line[this->used], room);
         if (got <= 0) {
             return;
@@ -69,12 +69,12 @@ static void read_text(companion_t *this) {
             list_line(this, begin);
             begin = end + 1;
         }
-        if ((begin == this->line) && (this->used == sizeof this->line - 1u)) {
+        if ((begin == this->line) && (this->used == sizeof this->line - 1)) {
             list_line(this, begin); /* too long: in parts */
             begin = &this->line[this->used];
         }
         this->used = strlen(begin);
-        memmove(this->line, begin, this->used + 1u);
+        memmove(this->line, begin, this->used + 1);
     }
 }
 
@@ -88,7 +88,7 @@ static void take_message(companion_t *this, const monitor_message_t *message) {
 
 static void read_messages(companion_t *this) {
     monitor_message_t message;
-    for (int i = 0; i < (int)MESSAGES_AT_ONCE; i++) {
+    for (int i = 0; i < MESSAGES_AT_ONCE; i++) {
         const ssize_t got = recv(this->ends->control, &message, sizeof message, MSG_DONTWAIT);
         if (got == (ssize_t)sizeof message) {
             take_message(this, &message);
@@ -100,7 +100,7 @@ static void read_messages(companion_t *this) {
 }
 
 static void pass_typed(companion_t *this) {
-    char line[MONITOR_TYPED_SIZE + 1u];
+    char line[MONITOR_TYPED_SIZE + 1];
     if (this->ui.wish.has_typed) {
         const int length = snprintf(line, sizeof line, "%s\n", this->ui.page.typed);
         if (write(this->ends->typed, line, (size_t)length) != length) {
@@ -165,7 +165,7 @@ static bool prepare(companion_t *this) {
         .config = given->config,
         .interfaces =
             {[HAL_CAN_VEHICLE] = given->interfaces[HAL_CAN_VEHICLE], [HAL_CAN_AI] = given->interfaces[HAL_CAN_AI]},
-        .is_gateway = given->config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY,
+        .is_gateway = given->config->topology == AGV_TOPOLOGY_GATEWAY,
         .owned = given->has_supervisor,
     };
     const monitor_page_t page = {.title = given->title, .can_type = given->can_type};
@@ -190,7 +190,7 @@ int monitor_companion_main(const monitor_companion_config_t *config, const monit
     if (!wait_for_show(ends)) {
         return status;
     }
-    companion_t *this = calloc(1u, sizeof *this);
+    companion_t *this = calloc(1, sizeof *this);
     if (this == NULL) {
         return STATUS_UNUSABLE;
     }

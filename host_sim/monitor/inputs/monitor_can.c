@@ -12,7 +12,7 @@ static bool open_side(monitor_can_side_t *side, char *error) {
     const linux_can_options_t options = {.error_frames = true, .receive_size = RECEIVE_SIZE};
     side->is_open = linux_can_open(&side->can, side->interface, &options, error);
     side->has_next = false;
-    side->lost = 0u;
+    side->lost = 0;
     return side->is_open;
 }
 
@@ -20,7 +20,7 @@ bool monitor_can_open(monitor_can_t *bus, const char *const interfaces[HAL_CAN_S
     char error[LINUX_CAN_ERROR_SIZE];
     memset(bus, 0, sizeof *bus);
     linux_clock_start(&bus->clock);
-    for (int i = 0; i < (int)HAL_CAN_SIDES; i++) {
+    for (int i = 0; i < HAL_CAN_SIDES; i++) {
         bus->sides[i].interface = interfaces[i];
         if ((interfaces[i] != NULL) && !open_side(&bus->sides[i], error)) {
             monitor_can_close(bus);
@@ -48,8 +48,7 @@ static void try_again(monitor_can_side_t *side, uint64_t now_us) {
 
 /** The time of a stamp. The clocks are read once a pass: in a flood it would cost more than all the rest. */
 static uint64_t time_of(monitor_can_t *bus, uint64_t stamp_us) {
-    const bool is_near =
-        (bus->stamp_us != 0u) && (stamp_us >= bus->stamp_us) && (stamp_us - bus->stamp_us < (uint64_t)US_PER_S);
+    const bool is_near = (bus->stamp_us != 0) && (stamp_us >= bus->stamp_us) && (stamp_us - bus->stamp_us < US_PER_S);
     if (!is_near) {
         bus->stamp_us = stamp_us;
         bus->stamp_at_us = linux_clock_of_stamp(&bus->clock, stamp_us);
@@ -92,7 +91,7 @@ static void pass_on(monitor_can_t *bus, hal_can_side_t number, monitor_t *monito
 /** Pass on the earliest frame. @return false: there is none */
 static bool pass_one(monitor_can_t *bus, monitor_t *monitor, monitor_record_t *record) {
     monitor_can_side_t *sides = bus->sides;
-    for (int i = 0; i < (int)HAL_CAN_SIDES; i++) {
+    for (int i = 0; i < HAL_CAN_SIDES; i++) {
         look(bus, &sides[i]);
     }
     const bool vehicle = sides[HAL_CAN_VEHICLE].has_next;
@@ -107,8 +106,8 @@ static bool pass_one(monitor_can_t *bus, monitor_t *monitor, monitor_record_t *r
 
 void monitor_can_pass(monitor_can_t *bus, monitor_t *monitor, monitor_record_t *record) {
     const uint64_t now_us = linux_clock_now_us(&bus->clock);
-    bus->stamp_us = 0u;
-    for (int i = 0; i < (int)HAL_CAN_SIDES; i++) {
+    bus->stamp_us = 0;
+    for (int i = 0; i < HAL_CAN_SIDES; i++) {
         monitor_can_side_t *side = &bus->sides[i];
         if (side->interface != NULL) {
             try_again(side, now_us);
@@ -116,16 +115,16 @@ void monitor_can_pass(monitor_can_t *bus, monitor_t *monitor, monitor_record_t *
         }
     }
     int passed = 0;
-    while ((passed < (int)FRAMES_AT_ONCE) && pass_one(bus, monitor, record)) {
+    while ((passed < FRAMES_AT_ONCE) && pass_one(bus, monitor, record)) {
         passed++;
     }
-    if (passed < (int)FRAMES_AT_ONCE) {
+    if (passed < FRAMES_AT_ONCE) {
         monitor_time(monitor, now_us); /* all frames until then were passed on */
     }
 }
 
 void monitor_can_close(monitor_can_t *bus) {
-    for (int i = 0; i < (int)HAL_CAN_SIDES; i++) {
+    for (int i = 0; i < HAL_CAN_SIDES; i++) {
         close_side(&bus->sides[i]);
     }
 }

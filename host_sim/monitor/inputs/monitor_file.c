@@ -26,7 +26,7 @@ static void read_next(monitor_file_t *file) {
     if (file->has_next) {
         note_back(file);
         const uint64_t stamp_us = file->next.stamp_us;
-        const uint64_t t_us = (stamp_us > file->first_us) ? stamp_us - file->first_us : 0u;
+        const uint64_t t_us = (stamp_us > file->first_us) ? stamp_us - file->first_us : 0;
         file->next_us = (t_us > before_us) ? t_us : before_us;
     }
 }
@@ -34,9 +34,9 @@ static void read_next(monitor_file_t *file) {
 bool monitor_file_open(monitor_file_t *file, const char *path, const char *ai_interface, bool skip_bad) {
     file->ai_interface = ai_interface;
     file->first_us = UINT64_MAX;
-    file->next_us = 0u;
+    file->next_us = 0;
     file->ai_was_heard = false;
-    file->back_us = 0u;
+    file->back_us = 0;
     if (!candump_open(&file->log, path, skip_bad)) {
         return false;
     }
@@ -54,7 +54,7 @@ bool monitor_file_open(monitor_file_t *file, const char *path, const char *ai_in
 
 bool monitor_file_pass(monitor_file_t *file, monitor_t *monitor, uint64_t until_us) {
     int passed = 0;
-    while (file->has_next && (file->next_us <= until_us) && (passed < (int)RECORDS_AT_ONCE)) {
+    while (file->has_next && (file->next_us <= until_us) && (passed < RECORDS_AT_ONCE)) {
         const bool is_ai = candump_is_from(&file->next, file->ai_interface);
         const hal_can_side_t side = is_ai ? HAL_CAN_AI : HAL_CAN_VEHICLE;
         file->ai_was_heard = file->ai_was_heard || is_ai;
@@ -74,7 +74,7 @@ void monitor_file_remark(const monitor_file_t *file) {
              " s; the times are wrong there: cut or sort the log",
              file->log.name, file->back_line, file->back_us / US_PER_S, file->back_us % US_PER_S / US_PER_MS);
     }
-    if (file->log.skipped > 0u) {
+    if (file->log.skipped > 0) {
         note("%s: lines skipped: %" PRIu64, file->log.name, file->log.skipped);
     }
 }

@@ -18,13 +18,13 @@
 typedef struct {
     candump_log_t log;
     candump_record_t next;
-    const char *ai_interface;                   /**< frames of this one are the AI side's; NULL: none */
-    char interface[CANDUMP_INTERFACE_MAX + 1u]; /**< the first other one */
-    uint64_t first_us;                          /**< stamp of the first frame */
-    uint64_t next_us;                           /**< time of `next`; never goes back */
-    uint64_t back_us;                           /**< the furthest that a time stamp went back; 0: none did */
-    uint64_t back_line;                         /**< where */
-    bool ai_was_heard;                          /**< a frame of the AI side was passed on */
+    const char *ai_interface;                  /**< frames of this one are the AI side's; NULL: none */
+    char interface[CANDUMP_INTERFACE_MAX + 1]; /**< the first other one */
+    uint64_t first_us;                         /**< stamp of the first frame */
+    uint64_t next_us;                          /**< time of `next`; never goes back */
+    uint64_t back_us;                          /**< the furthest that a time stamp went back; 0: none did */
+    uint64_t back_line;                        /**< where */
+    bool ai_was_heard;                         /**< a frame of the AI side was passed on */
     bool has_next;
     bool is_read; /**< to its end */
     bool failed;  /**< a bad line or a read error: was reported */

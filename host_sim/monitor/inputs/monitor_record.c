@@ -35,23 +35,23 @@ bool monitor_record_begin(monitor_record_t *record, const char *path) {
     }
     record->fd = open(record->name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, MODE);
     record->error = 0;
-    record->frames = 0u;
-    record->left_out = 0u;
-    record->used = 0u;
+    record->frames = 0;
+    record->left_out = 0;
+    record->used = 0;
     return record->fd != NO_FILE;
 }
 
 /** A frame that is no classic data frame. @return length of the line */
 static size_t write_special(char *line, size_t size, const char *interface, uint64_t stamp_us,
                             const hal_can_frame_t *frame) {
-    const bool is_error = (frame->flags & HAL_CAN_ERROR) != 0u;
+    const bool is_error = (frame->flags & HAL_CAN_ERROR) != 0;
     char id[CANDUMP_ID_SIZE];
     int used = snprintf(line, size, "(%010" PRIu64 ".%06" PRIu64 ") %s %s#", stamp_us / US_PER_S, stamp_us % US_PER_S,
                         interface, candump_id_text(id, frame->id, frame->flags));
     if (!is_error) {
         used += snprintf(&line[used], size - (size_t)used, "R%u", (unsigned)frame->length);
     }
-    for (unsigned i = 0u; is_error && (i < frame->length) && (i < sizeof frame->data); i++) {
+    for (unsigned i = 0; is_error && (i < frame->length) && (i < sizeof frame->data); i++) {
         used += snprintf(&line[used], size - (size_t)used, "%02X", (unsigned)frame->data[i]);
     }
     used += snprintf(&line[used], size - (size_t)used, "\n");
@@ -63,14 +63,14 @@ void monitor_record_add(monitor_record_t *record, const char *interface, uint64_
     if (record->fd == NO_FILE) {
         return;
     }
-    if ((frame->flags & HAL_CAN_FD) != 0u) {
+    if ((frame->flags & HAL_CAN_FD) != 0) {
         record->left_out++;
         return;
     }
     if (record->used + CANDUMP_WRITE_MAX > sizeof record->buffer) {
         (void)monitor_record_flush(record);
     }
-    const bool is_special = (frame->flags & (HAL_CAN_ERROR | HAL_CAN_REMOTE)) != 0u;
+    const bool is_special = (frame->flags & (HAL_CAN_ERROR | HAL_CAN_REMOTE)) != 0;
     char *line = &record->buffer[record->used];
     record->used += is_special ? write_special(line, CANDUMP_WRITE_MAX, interface, stamp_us, frame)
                                : candump_write(line, stamp_us, interface, frame);
@@ -78,7 +78,7 @@ void monitor_record_add(monitor_record_t *record, const char *interface, uint64_
 }
 
 bool monitor_record_flush(monitor_record_t *record) {
-    size_t done = 0u;
+    size_t done = 0;
     while ((record->fd != NO_FILE) && (record->error == 0) && (done < record->used)) {
         const ssize_t count = write(record->fd, &record->buffer[done], record->used - done);
         if (count > 0) {
@@ -87,7 +87,7 @@ bool monitor_record_flush(monitor_record_t *record) {
             record->error = (errno != 0) ? errno : EIO;
         }
     }
-    record->used = 0u;
+    record->used = 0;
     return record->error == 0;
 }
 
@@ -105,13 +105,13 @@ bool monitor_record_end(monitor_record_t *record) {
 
 bool monitor_record_close(monitor_record_t *record) {
     const uint64_t left_out = record->left_out;
-    record->left_out = 0u;
+    record->left_out = 0;
     if (!monitor_record_end(record)) {
         const int error = record->error;
         record->error = 0;
         return report("%s: %s", record->name, strerror(error));
     }
-    if (left_out > 0u) {
+    if (left_out > 0) {
         note("%s: %" PRIu64 " CAN FD frames are not in it", record->name, left_out);
     }
     return true;

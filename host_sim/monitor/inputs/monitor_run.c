@@ -133,7 +133,7 @@ static bool make_monitor(run_t *run) {
         .config = &request->config,
         .interfaces = {[HAL_CAN_VEHICLE] = is_log ? run->file.interface : request->bus.interfaces[HAL_CAN_VEHICLE],
                        [HAL_CAN_AI] = is_log ? request->ai_interface : request->bus.interfaces[HAL_CAN_AI]},
-        .is_gateway = request->config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY,
+        .is_gateway = request->config.topology == AGV_TOPOLOGY_GATEWAY,
         .shadow = request->shadow,
         .on_entry = run->has_screen ? NULL : monitor_lines_print,
     };
@@ -181,7 +181,7 @@ static bool run_all(run_t *run) {
 }
 
 status_t monitor_run(const monitor_request_t *request) {
-    run_t *run = calloc(1u, sizeof *run);
+    run_t *run = calloc(1, sizeof *run);
     if (run == NULL) {
         (void)report("out of memory");
         return STATUS_UNUSABLE;

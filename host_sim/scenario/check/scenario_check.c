@@ -13,14 +13,14 @@ enum { NOT_YET = -128 };
 void scenario_check_fail(scenario_check_t *check, size_t line, const char *format, ...) {
     if (check->failure_count < SCENARIO_FAILURES_MAX) {
         char *text = check->failures[check->failure_count];
-        const int used = (line != 0u) ? snprintf(text, SCENARIO_FAILURE_SIZE, "line %zu: ", line) : 0;
+        const int used = (line != 0) ? snprintf(text, SCENARIO_FAILURE_SIZE, "line %zu: ", line) : 0;
         va_list arguments;
         va_start(arguments, format);
         (void)vsnprintf(&text[used], SCENARIO_FAILURE_SIZE - (size_t)used, format, arguments);
         va_end(arguments);
     }
     check->failure_count++;
-    check->expectation_count += (line == 0u) ? 1u : 0u; /* that nothing else happens is no line, and expected, too */
+    check->expectation_count += (line == 0) ? 1 : 0; /* that nothing else happens is no line, and expected, too */
 }
 
 static const char *name_of(agv_fault_t fault) {
@@ -43,7 +43,7 @@ void scenario_check_init(scenario_check_t *check, const scenario_t *scenario) {
     check->expectation_count = expect->states.count + expect->frames.count + expect->never.count +
                                expect->outputs.count + expect->leds.count + expect->faults.count +
                                expect->resets.count + expect->startups.count + expect->vehicle.count +
-                               expect->counters.count + ((expect->no_hazards != 0u) ? 1u : 0u);
+                               expect->counters.count + ((expect->no_hazards != 0) ? 1 : 0);
     scenario_check_frames_init(check);
 }
 
@@ -53,7 +53,7 @@ static void check_state(scenario_check_t *check, uint32_t t_ms, const agv_event_
 
     check->next_state++;
     if (index >= check->expect.states.count) {
-        scenario_check_fail(check, 0u, "no further change of state is expected, but at %u ms: %s (%s)", (unsigned)t_ms,
+        scenario_check_fail(check, 0, "no further change of state is expected, but at %u ms: %s (%s)", (unsigned)t_ms,
                             state_of(event->b), name_of((agv_fault_t)event->c));
         return;
     }
@@ -70,14 +70,14 @@ static void check_state(scenario_check_t *check, uint32_t t_ms, const agv_event_
 static bool is_as_expected(const scenario_fault_t *fault, uint32_t t_ms, const agv_event_t *event) {
     return scenario_check_is_in(t_ms, fault->raised_ms) &&
            (!fault->has_class || ((uint8_t)fault->fault_class == event->b)) &&
-           ((fault->parts == 0u) || (fault->parts == event->missing));
+           ((fault->parts == 0) || (fault->parts == event->missing));
 }
 
 static void raise_fault(scenario_check_t *check, uint32_t t_ms, const agv_event_t *event) {
     const scenario_expect_t *expect = &check->expect;
     bool named = false;
 
-    for (size_t i = 0u; i < expect->faults.count; i++) {
+    for (size_t i = 0; i < expect->faults.count; i++) {
         const scenario_fault_t *fault = &expect->faults.items[i];
         scenario_fault_seen_t *seen = &check->faults[i];
         if ((fault->fault != (agv_fault_t)event->a) || seen->raised) {
@@ -93,7 +93,7 @@ static void raise_fault(scenario_check_t *check, uint32_t t_ms, const agv_event_
         seen->parts = event->missing;
     }
     if (expect->no_other_faults && !named) {
-        scenario_check_fail(check, 0u, "no other fault is expected, but at %u ms: %s (%s)", (unsigned)t_ms,
+        scenario_check_fail(check, 0, "no other fault is expected, but at %u ms: %s (%s)", (unsigned)t_ms,
                             name_of((agv_fault_t)event->a), agv_class_name((agv_fault_class_t)event->b));
     }
 }
@@ -101,7 +101,7 @@ static void raise_fault(scenario_check_t *check, uint32_t t_ms, const agv_event_
 static void end_fault(scenario_check_t *check, uint32_t t_ms, const agv_event_t *event) {
     const scenario_expect_t *expect = &check->expect;
 
-    for (size_t i = 0u; i < expect->faults.count; i++) {
+    for (size_t i = 0; i < expect->faults.count; i++) {
         const scenario_fault_t *fault = &expect->faults.items[i];
         scenario_fault_seen_t *seen = &check->faults[i];
         if ((fault->fault != (agv_fault_t)event->a) || !seen->raised || seen->ended) {
@@ -129,17 +129,17 @@ static void check_reset(scenario_check_t *check, uint32_t t_ms, const agv_event_
     check->next_reset++;
     (void)missing_text(event->missing, seen_text);
     if (index >= check->expect.resets.count) {
-        scenario_check_fail(check, 0u, "no further reset is expected, but at %u ms: %s [%s]", (unsigned)t_ms,
-                            (event->a != 0u) ? "accepted" : "refused", seen_text);
+        scenario_check_fail(check, 0, "no further reset is expected, but at %u ms: %s [%s]", (unsigned)t_ms,
+                            (event->a != 0) ? "accepted" : "refused", seen_text);
         return;
     }
     const scenario_reset_t *reset = &check->expect.resets.items[index];
     scenario_check_window_text(reset->at_ms, window);
-    if ((reset->accepted != (event->a != 0u)) || (reset->missing != event->missing) ||
+    if ((reset->accepted != (event->a != 0)) || (reset->missing != event->missing) ||
         !scenario_check_is_in(t_ms, reset->at_ms)) {
         scenario_check_fail(check, reset->line, "reset %s [%s] is expected %s, seen: %s [%s] at %u ms",
                             reset->accepted ? "accepted" : "refused", missing_text(reset->missing, text), window,
-                            (event->a != 0u) ? "accepted" : "refused", seen_text, (unsigned)t_ms);
+                            (event->a != 0) ? "accepted" : "refused", seen_text, (unsigned)t_ms);
     }
 }
 
@@ -152,7 +152,7 @@ static void check_startup(scenario_check_t *check, uint32_t t_ms, const agv_even
     check->next_startup++;
     (void)missing_text(event->missing, seen_text);
     if (index >= check->expect.startups.count) {
-        scenario_check_fail(check, 0u, "no report of missing conditions at start is expected, but at %u ms: [%s]",
+        scenario_check_fail(check, 0, "no report of missing conditions at start is expected, but at %u ms: [%s]",
                             (unsigned)t_ms, seen_text);
         return;
     }
@@ -168,7 +168,7 @@ static void check_startup(scenario_check_t *check, uint32_t t_ms, const agv_even
 static void check_led(scenario_check_t *check, uint32_t last_ms) {
     const scenario_expect_t *expect = &check->expect;
 
-    for (size_t i = 0u; i < expect->leds.count; i++) {
+    for (size_t i = 0; i < expect->leds.count; i++) {
         const scenario_led_t *led = &expect->leds.items[i];
         const bool overlap =
             !scenario_check_waits(led->at_ms) && (led->at_ms.from <= last_ms) && (led->at_ms.to >= check->led_since_ms);
@@ -185,7 +185,7 @@ static void check_led(scenario_check_t *check, uint32_t last_ms) {
 
 static void change_led(scenario_check_t *check, uint32_t t_ms, int8_t code) {
     if ((check->led_code != NOT_YET) && (t_ms > check->led_since_ms)) {
-        check_led(check, t_ms - 1u);
+        check_led(check, t_ms - 1);
     }
     check->led_code = code;
     check->led_since_ms = t_ms;
@@ -202,9 +202,8 @@ void scenario_check_event(scenario_check_t *check, const session_event_t *event)
     if (scenario_events_note(&check->events, event)) {
         scenario_check_resolve(check);
     }
-    if (check->expect.any_states &&
-        ((recorded->kind == (uint8_t)AGV_EVENT_STATE) || (recorded->kind == (uint8_t)AGV_EVENT_RESET) ||
-         (recorded->kind == (uint8_t)AGV_EVENT_STARTUP))) {
+    if (check->expect.any_states && ((recorded->kind == AGV_EVENT_STATE) || (recorded->kind == AGV_EVENT_RESET) ||
+                                     (recorded->kind == AGV_EVENT_STARTUP))) {
         return;
     }
     switch ((agv_event_kind_t)recorded->kind) {
@@ -212,7 +211,7 @@ void scenario_check_event(scenario_check_t *check, const session_event_t *event)
         check_state(check, t_ms, recorded);
         break;
     case AGV_EVENT_FAULT:
-        if (recorded->c != 0u) {
+        if (recorded->c != 0) {
             raise_fault(check, t_ms, recorded);
         } else {
             end_fault(check, t_ms, recorded);
@@ -241,7 +240,7 @@ void scenario_check_output(scenario_check_t *check, uint32_t t_ms, bool closed) 
     check->closed = closed;
     check->next_output++;
     if (index >= expect->outputs.count) {
-        scenario_check_fail(check, 0u, "no further change of the safety output is expected, but at %u ms: %s",
+        scenario_check_fail(check, 0, "no further change of the safety output is expected, but at %u ms: %s",
                             (unsigned)t_ms, closed ? "closed" : "open");
         return;
     }
@@ -285,7 +284,7 @@ static void finish_lists(scenario_check_t *check) {
 }
 
 static void finish_leds(scenario_check_t *check) {
-    for (size_t i = 0u; i < check->expect.leds.count; i++) {
+    for (size_t i = 0; i < check->expect.leds.count; i++) {
         const scenario_led_t *led = &check->expect.leds.items[i];
         char window[SCENARIO_WINDOW_TEXT_SIZE];
         if ((led->at_some_time || scenario_check_waits(led->at_ms)) && !check->led_seen[i]) {
@@ -302,7 +301,7 @@ static void fail_otherwise(scenario_check_t *check, const scenario_fault_t *faul
     char parts[MISSING_TEXT_SIZE];
     const char *as_class = (fault->fault_class == AGV_CLASS_TRIP) ? " as a trip" : " as a warning";
 
-    if (fault->parts != 0u) {
+    if (fault->parts != 0) {
         scenario_check_fail(check, fault->line, "%s [%s] is expected to be raised %s, seen: [%s] at %u ms",
                             name_of(fault->fault), parts_text(fault->parts, expected), window,
                             parts_text(seen->parts, parts), (unsigned)seen->seen_ms);
@@ -316,7 +315,7 @@ static void finish_faults(scenario_check_t *check) {
     const scenario_expect_t *expect = &check->expect;
     char window[SCENARIO_WINDOW_TEXT_SIZE];
 
-    for (size_t i = 0u; i < expect->faults.count; i++) {
+    for (size_t i = 0; i < expect->faults.count; i++) {
         const scenario_fault_t *fault = &expect->faults.items[i];
         const scenario_fault_seen_t *seen = &check->faults[i];
         if (!seen->raised) {
@@ -340,9 +339,9 @@ static void finish_faults(scenario_check_t *check) {
 static void finish_counters(scenario_check_t *check, const agv_counters_t *counters) {
     const scenario_expect_t *expect = &check->expect;
 
-    for (size_t i = 0u; i < expect->counters.count; i++) {
+    for (size_t i = 0; i < expect->counters.count; i++) {
         const scenario_counter_t *counter = &expect->counters.items[i];
-        uint32_t seen = 0u;
+        uint32_t seen = 0;
         if (counters != NULL) {
             memcpy(&seen, (const uint8_t *)counters + counter->offset, sizeof seen);
         }

@@ -10,12 +10,12 @@ void scenario_check_frames_init(scenario_check_t *check) {
     const scenario_expect_t *expect = &check->expect;
 
     check->only_supervisor = true;
-    for (size_t i = 0u; i < expect->frames.count; i++) {
+    for (size_t i = 0; i < expect->frames.count; i++) {
         check->ids[i] = scenario_frame_id(check->scenario, &expect->frames.items[i]);
         check->frames[i].last_ms = expect->frames.items[i].at_ms.from;
         check->only_supervisor = check->only_supervisor && (expect->frames.items[i].from == SCENARIO_FROM_SUPERVISOR);
     }
-    for (size_t i = 0u; i < expect->never.count; i++) {
+    for (size_t i = 0; i < expect->never.count; i++) {
         check->never_ids[i] = scenario_frame_id(check->scenario, &expect->never.items[i]);
         check->only_supervisor = check->only_supervisor && (expect->never.items[i].from == SCENARIO_FROM_SUPERVISOR);
     }
@@ -32,7 +32,7 @@ static bool bytes_match(const scenario_frame_t *expected, const hal_can_frame_t 
     if (!expected->exact_length) {
         return true;
     }
-    for (unsigned i = 0u; i < AGV_DLC; i++) {
+    for (unsigned i = 0; i < AGV_DLC; i++) {
         if ((frame->data[i] & expected->mask[i]) != expected->value[i]) {
             return false;
         }
@@ -42,8 +42,8 @@ static bool bytes_match(const scenario_frame_t *expected, const hal_can_frame_t 
 
 static const char *frame_text(const hal_can_frame_t *frame, char text[FRAME_TEXT_SIZE]) {
     int used = snprintf(text, FRAME_TEXT_SIZE, "%03Xh [", (unsigned)frame->id);
-    for (unsigned i = 0u; i < frame->length; i++) {
-        used += snprintf(&text[used], FRAME_TEXT_SIZE - (size_t)used, "%s%02X", (i > 0u) ? " " : "", frame->data[i]);
+    for (unsigned i = 0; i < frame->length; i++) {
+        used += snprintf(&text[used], FRAME_TEXT_SIZE - (size_t)used, "%s%02X", (i > 0) ? " " : "", frame->data[i]);
     }
     (void)snprintf(&text[used], FRAME_TEXT_SIZE - (size_t)used, "]");
     return text;
@@ -56,9 +56,9 @@ static const char *expected_text(const scenario_frame_t *expected, uint32_t id, 
         return text;
     }
     used += snprintf(&text[used], FRAME_TEXT_SIZE - (size_t)used, " [");
-    for (unsigned i = 0u; i < expected->length; i++) {
-        const char *separator = (i > 0u) ? " " : "";
-        used += (expected->mask[i] != 0u)
+    for (unsigned i = 0; i < expected->length; i++) {
+        const char *separator = (i > 0) ? " " : "";
+        used += (expected->mask[i] != 0)
                     ? snprintf(&text[used], FRAME_TEXT_SIZE - (size_t)used, "%s%02X", separator, expected->value[i])
                     : snprintf(&text[used], FRAME_TEXT_SIZE - (size_t)used, "%s..", separator);
     }
@@ -88,8 +88,8 @@ static void check_first(scenario_check_t *check, size_t index, uint32_t t_ms, co
 }
 
 static bool gap_is_good(const scenario_frame_t *expected, uint32_t gap_ms) {
-    return (expected->every_ms == 0u) || ((gap_ms + expected->jitter_ms >= expected->every_ms) &&
-                                          (gap_ms <= expected->every_ms + expected->jitter_ms));
+    return (expected->every_ms == 0) || ((gap_ms + expected->jitter_ms >= expected->every_ms) &&
+                                         (gap_ms <= expected->every_ms + expected->jitter_ms));
 }
 
 static void check_frame(scenario_check_t *check, size_t index, uint32_t t_ms, const hal_can_frame_t *frame) {
@@ -102,16 +102,16 @@ static void check_frame(scenario_check_t *check, size_t index, uint32_t t_ms, co
         return;
     }
     if (!scenario_check_is_in(t_ms, expected->at_ms)) {
-        if ((seen->count == 0u) && !seen->near) {
+        if ((seen->count == 0) && !seen->near) {
             seen->near = t_ms > expected->at_ms.to;
             seen->nearest_ms = t_ms;
         }
         return;
     }
     const uint32_t gap_ms = t_ms - seen->last_ms;
-    const bool good = (seen->count > 0u)
+    const bool good = (seen->count > 0)
                           ? gap_is_good(expected, gap_ms)
-                          : (expected->every_ms == 0u) || (gap_ms <= expected->every_ms + expected->jitter_ms);
+                          : (expected->every_ms == 0) || (gap_ms <= expected->every_ms + expected->jitter_ms);
     if (!good && !seen->broken) {
         seen->broken = true;
         scenario_check_fail(check, expected->line,
@@ -132,7 +132,7 @@ static void check_never(scenario_check_t *check, size_t index, uint32_t t_ms, co
         return;
     }
     check->never_count[index]++;
-    if (check->never_count[index] == 1u) {
+    if (check->never_count[index] == 1) {
         scenario_check_window_text(never->at_ms, window);
         scenario_check_fail(check, never->line, "a frame is forbidden %s, seen: %s at %u ms", window,
                             frame_text(frame, got), (unsigned)t_ms);
@@ -147,12 +147,12 @@ void scenario_check_frame(scenario_check_t *check, uint64_t t_us, hal_can_side_t
     if (check->only_supervisor && (from != SCENARIO_FROM_SUPERVISOR)) {
         return;
     }
-    for (size_t i = 0u; i < expect->frames.count; i++) {
+    for (size_t i = 0; i < expect->frames.count; i++) {
         if (is_about(&expect->frames.items[i], check->ids[i], side, from, frame)) {
             check_frame(check, i, t_ms, frame);
         }
     }
-    for (size_t i = 0u; i < expect->never.count; i++) {
+    for (size_t i = 0; i < expect->never.count; i++) {
         if (is_about(&expect->never.items[i], check->never_ids[i], side, from, frame)) {
             check_never(check, i, t_ms, frame);
         }
@@ -172,10 +172,10 @@ static void finish_frame(scenario_check_t *check, size_t index) {
     scenario_check_window_text(expected->at_ms, window);
     (void)expected_text(expected, check->ids[index], wanted);
     if ((seen->count < expected->count.from) || (seen->count > expected->count.to)) {
-        if ((seen->count == 0u) && (seen->nearest_ms != 0u)) {
+        if ((seen->count == 0) && (seen->nearest_ms != 0)) {
             (void)snprintf(near, sizeof near, " (one at %u ms)", (unsigned)seen->nearest_ms);
         }
-        if ((expected->count.to == UINT32_MAX) && (expected->count.from == 1u)) {
+        if ((expected->count.to == UINT32_MAX) && (expected->count.from == 1)) {
             scenario_check_fail(check, expected->line, "%s is expected at least once %s, seen: %u%s", wanted, window,
                                 (unsigned)seen->count, near);
         } else if (expected->count.to == UINT32_MAX) {
@@ -186,7 +186,7 @@ static void finish_frame(scenario_check_t *check, size_t index) {
                                 (unsigned)expected->count.from, (unsigned)expected->count.to, window,
                                 (unsigned)seen->count, near);
         }
-    } else if ((expected->every_ms != 0u) &&
+    } else if ((expected->every_ms != 0) &&
                (expected->at_ms.to - seen->last_ms > expected->every_ms + expected->jitter_ms)) {
         scenario_check_fail(check, expected->line, "%s is expected every %u ms %s, the last one was at %u ms", wanted,
                             (unsigned)expected->every_ms, window, (unsigned)seen->last_ms);
@@ -196,10 +196,10 @@ static void finish_frame(scenario_check_t *check, size_t index) {
 }
 
 void scenario_check_frames_finish(scenario_check_t *check) {
-    for (size_t i = 0u; i < check->expect.frames.count; i++) {
+    for (size_t i = 0; i < check->expect.frames.count; i++) {
         finish_frame(check, i);
     }
-    for (size_t i = 0u; i < check->expect.never.count; i++) {
+    for (size_t i = 0; i < check->expect.never.count; i++) {
         const scenario_frame_t *never = &check->expect.never.items[i];
         char anchor[SCENARIO_ANCHOR_TEXT_SIZE];
         if (scenario_check_waits(never->at_ms)) {

@@ -2,7 +2,7 @@
 #include "scenario/check/scenario_check.h"
 
 bool scenario_check_wants_vehicle(const scenario_check_t *check, uint32_t t_ms) {
-    for (size_t i = 0u; i < check->expect.vehicle.count; i++) {
+    for (size_t i = 0; i < check->expect.vehicle.count; i++) {
         if (scenario_check_is_in(t_ms, check->expect.vehicle.items[i].at_ms) && !check->vehicle_seen[i]) {
             return true;
         }
@@ -45,7 +45,7 @@ static void judge_code(judging_t *judging, bool has, const char *what, unsigned 
 
 /** Compare. @param check NULL: nothing is reported @return whether all of it holds */
 static bool judge(scenario_check_t *check, const scenario_vehicle_t *expected, const vehicle_view_t *view) {
-    judging_t judging = {check, expected, 0u};
+    judging_t judging = {check, expected, 0};
 
     judge_code(&judging, expected->has_gear, "gear (P 8, R 2, N 4, D 1)", expected->gear, view->gear);
     judge_code(&judging, expected->has_mode, "mode (manual 0, autopilot 1)", expected->autopilot, view->autopilot);
@@ -57,11 +57,11 @@ static bool judge(scenario_check_t *check, const scenario_vehicle_t *expected, c
     judge_range(&judging, expected->has_angle, "steering in degrees", expected->angle_deg, view->angle_ddeg / 10);
     judge_range(&judging, expected->has_fastest_park, "highest speed in mm/s at which P was engaged",
                 expected->fastest_park_mm_s, view->fastest_park_mm_s);
-    return judging.count == 0u;
+    return judging.count == 0;
 }
 
 void scenario_check_vehicle(scenario_check_t *check, uint32_t t_ms, const vehicle_view_t *view) {
-    for (size_t i = 0u; i < check->expect.vehicle.count; i++) {
+    for (size_t i = 0; i < check->expect.vehicle.count; i++) {
         const scenario_vehicle_t *expected = &check->expect.vehicle.items[i];
         if (!scenario_check_is_in(t_ms, expected->at_ms) || check->vehicle_seen[i]) {
             continue;
@@ -72,7 +72,7 @@ void scenario_check_vehicle(scenario_check_t *check, uint32_t t_ms, const vehicl
 }
 
 void scenario_check_vehicle_finish(scenario_check_t *check) {
-    for (size_t i = 0u; i < check->expect.vehicle.count; i++) {
+    for (size_t i = 0; i < check->expect.vehicle.count; i++) {
         const scenario_vehicle_t *expected = &check->expect.vehicle.items[i];
         char window[SCENARIO_WINDOW_TEXT_SIZE];
         if (!check->vehicle_seen[i]) {

@@ -4,7 +4,7 @@
 #include "scenario/check/scenario_check.h"
 
 bool scenario_check_waits(scenario_window_t window) {
-    return window.after.kind != (uint8_t)SCENARIO_FROM_START;
+    return window.after.kind != SCENARIO_FROM_START;
 }
 
 bool scenario_check_is_in(uint32_t t_ms, scenario_window_t window) {
@@ -29,7 +29,7 @@ void scenario_check_window_text(scenario_window_t window, char text[SCENARIO_WIN
 
 /** Count a window from the start of the run if its event has come. */
 static void resolve(const scenario_events_t *events, scenario_window_t *window) {
-    uint64_t event_ms = 0u;
+    uint64_t event_ms = 0;
 
     if (scenario_check_waits(*window) && scenario_events_find(events, window->after, &event_ms)) {
         window->from += (uint32_t)event_ms;
@@ -40,7 +40,7 @@ static void resolve(const scenario_events_t *events, scenario_window_t *window) 
 }
 
 static void resolve_frames(scenario_check_t *check) {
-    for (size_t i = 0u; i < check->expect.frames.count; i++) {
+    for (size_t i = 0; i < check->expect.frames.count; i++) {
         scenario_window_t *window = &check->expect.frames.items[i].at_ms;
         if (scenario_check_waits(*window)) {
             resolve(&check->events, window);
@@ -50,7 +50,7 @@ static void resolve_frames(scenario_check_t *check) {
 }
 
 #define RESOLVE_ALL(list, member)                                                                                      \
-    for (size_t i = 0u; i < check->expect.list.count; i++) {                                                           \
+    for (size_t i = 0; i < check->expect.list.count; i++) {                                                            \
         resolve(&check->events, &check->expect.list.items[i].member);                                                  \
     }
 

@@ -51,7 +51,7 @@ void hazard_found(hazard_t *hazard, hazard_kind_t kind, const char *cause) {
 }
 
 bool hazard_is_safe_now(const hazard_t *hazard, uint32_t within_ms) {
-    return (hazard->trip.last_ms != 0u) && (hazard->t_ms - hazard->trip.last_ms <= within_ms);
+    return (hazard->trip.last_ms != 0) && (hazard->t_ms - hazard->trip.last_ms <= within_ms);
 }
 
 int32_t hazard_speed_mm_s(const hazard_t *hazard) {
@@ -64,7 +64,7 @@ int32_t hazard_angle_ddeg(const hazard_t *hazard) {
 
 int32_t hazard_measured_ddeg(const hazard_t *hazard) {
     const uint8_t *data = hazard->messages[AGV_MSG_STEERING_STATUS].valid;
-    return (int32_t)(data[2] | ((uint32_t)data[3] << 8u)) - CENTRE_DDEG;
+    return (int32_t)(data[2] | ((uint32_t)data[3] << 8)) - CENTRE_DDEG;
 }
 
 void hazard_init(hazard_t *hazard, const scenario_t *scenario, const scenario_testbed_t *testbed) {
@@ -74,13 +74,13 @@ void hazard_init(hazard_t *hazard, const scenario_t *scenario, const scenario_te
     hazard->testbed = testbed;
     hazard->gateway = scenario->vehicle.gateway;
     hazard->limits_steering =
-        (hazard->config->steering_slew_ddeg_s != 0u) || (hazard->config->steering_fast_max_ddeg != 0u);
+        (hazard->config->steering_slew_ddeg_s != 0) || (hazard->config->steering_fast_max_ddeg != 0);
     hazard_rows_init(hazard);
 }
 
 /** A command of the supervisor on the vehicle side: its own, or passed on. */
 static void on_own_command(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
-    if ((message == AGV_MSG_GEAR_COMMAND) && (frame->data[0] == (uint8_t)AGV_GEAR_P)) {
+    if ((message == AGV_MSG_GEAR_COMMAND) && (frame->data[0] == AGV_GEAR_P)) {
         hazard_park_frame(hazard);
     }
     hazard_safe_frame(hazard, message, frame);
@@ -94,14 +94,14 @@ static void on_own_command(hazard_t *hazard, agv_message_t message, const hal_ca
 
 /** A command on the vehicle side of a gateway that is not the supervisor's. */
 static void on_foreign_command(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
-    const uint8_t value = (frame->length > 0u) ? frame->data[0] : 0u;
-    const bool moves = ((message == AGV_MSG_GEAR_COMMAND) && (value != (uint8_t)AGV_GEAR_P)) ||
-                       ((message == AGV_MSG_THROTTLE_COMMAND) && (value > 0u)) || (message == AGV_MSG_STEERING_COMMAND);
+    const uint8_t value = (frame->length > 0) ? frame->data[0] : 0;
+    const bool moves = ((message == AGV_MSG_GEAR_COMMAND) && (value != AGV_GEAR_P)) ||
+                       ((message == AGV_MSG_THROTTLE_COMMAND) && (value > 0)) || (message == AGV_MSG_STEERING_COMMAND);
     scenario_controller_t controller;
 
     scenario_testbed_controller(hazard->testbed, HAL_CAN_VEHICLE, &controller);
     const bool heard = controller.status.state == HAL_CAN_ERROR_ACTIVE; /* after a collision it may miss one */
-    if (moves && heard && hazard->closed && !hazard->trip.tripped && (hazard->foreign_ms == 0u)) {
+    if (moves && heard && hazard->closed && !hazard->trip.tripped && (hazard->foreign_ms == 0)) {
         hazard->foreign_ms = hazard->t_ms;
     }
 }
@@ -111,10 +111,10 @@ static void on_data(hazard_t *hazard, hal_can_side_t side, int from, const hal_c
     const agv_message_t message = (agv_message_t)agv_ids_find(&hazard->scenario->vehicle.ids, frame->id);
     const bool is_command = (uint32_t)message < AGV_COMMAND_COUNT;
 
-    if ((message == AGV_MSG_NONE) || ((frame->flags & (uint8_t)~HAL_CAN_FD) != 0u)) {
+    if ((message == AGV_MSG_NONE) || ((frame->flags & (uint8_t)~HAL_CAN_FD) != 0)) {
         return;
     }
-    if (from == (int)SCENARIO_FROM_SUPERVISOR) {
+    if (from == SCENARIO_FROM_SUPERVISOR) {
         if (is_command && (side == HAL_CAN_VEHICLE)) {
             on_own_command(hazard, message, frame);
         }
@@ -132,7 +132,7 @@ static void on_data(hazard_t *hazard, hal_can_side_t side, int from, const hal_c
 /** A supervisor that has begun anew does not know that it sent P, nor how close earlier commands came. */
 static void forget_commands(hazard_t *hazard) {
     hazard->trip.parked = false;
-    for (unsigned m = 0u; m < AGV_COMMAND_COUNT; m++) {
+    for (unsigned m = 0; m < AGV_COMMAND_COUNT; m++) {
         hazard->messages[m].fast = 0;
     }
 }
@@ -170,7 +170,7 @@ scenario_watch_t hazard_watch(hazard_t *hazard) {
 void hazard_step(hazard_t *hazard, uint64_t t_ms, const scenario_step_t *step) {
     const bool is_delivered = !step->of_vehicle && (step->supervisor.what == SCENARIO_DELIVER);
     const bool is_fd =
-        step->of_vehicle && (step->vehicle.what == VEHICLE_DO_SEND) && ((step->vehicle.frame.flags & HAL_CAN_FD) != 0u);
+        step->of_vehicle && (step->vehicle.what == VEHICLE_DO_SEND) && ((step->vehicle.frame.flags & HAL_CAN_FD) != 0);
 
     const bool is_restart = !step->of_vehicle && (step->supervisor.what == SCENARIO_RESTART);
     const bool is_flip = !step->of_vehicle && (step->supervisor.what == SCENARIO_FLIP_BIT);

@@ -14,7 +14,7 @@ enum {
 enum { FRAMES_MORE = 2, MARGIN_MS = 60, FRAMES_MAX = 65535 };
 
 static void count(uint32_t *frames, bool is_bad) {
-    *frames = !is_bad ? 0u : (*frames < (uint32_t)FRAMES_MAX) ? *frames + 1u : *frames;
+    *frames = !is_bad ? 0 : (*frames < FRAMES_MAX) ? *frames + 1 : *frames;
 }
 
 /** An angle that is invalid by its score is usable again after twice its frames. */
@@ -27,7 +27,7 @@ static void count_angle(hazard_t *hazard, const uint8_t data[AGV_DLC]) {
     count(&eps->good_angles, !is_bad);
     if (eps->bad_angles >= frames + FRAMES_MORE) {
         eps->is_angle_lost = true;
-    } else if (eps->good_angles + 1u >= 2u * frames) {
+    } else if (eps->good_angles + 1 >= 2 * frames) {
         eps->is_angle_lost = false;
     }
 }
@@ -39,11 +39,10 @@ void hazard_eps_status(hazard_t *hazard, agv_message_t message, const uint8_t da
     if (!hazard_is_hearing(hazard)) {
         *eps = (hazard_eps_t){0};
     } else if (message == AGV_MSG_EPS_STATUS) {
-        count(&eps->supply_frames, (data[FAULTS_BYTE] & (uint8_t)SUPPLY_BITS) != 0u);
-        count(&eps->bad_frames,
-              (data[MODE_BYTE] != (uint8_t)ANGLE_MODE) || ((data[FAULTS_BYTE] & (uint8_t)FAULT_BITS) != 0u));
+        count(&eps->supply_frames, (data[FAULTS_BYTE] & (uint8_t)SUPPLY_BITS) != 0);
+        count(&eps->bad_frames, (data[MODE_BYTE] != ANGLE_MODE) || ((data[FAULTS_BYTE] & (uint8_t)FAULT_BITS) != 0));
     } else if (message == AGV_MSG_VEHICLE_STATUS) {
-        count(&eps->alarm_frames, (data[ALARMS_BYTE] & (uint8_t)VCU_ALARMS) != 0u);
+        count(&eps->alarm_frames, (data[ALARMS_BYTE] & (uint8_t)VCU_ALARMS) != 0);
     } else if (message == AGV_MSG_STEERING_STATUS) {
         count_angle(hazard, data);
     } else {
@@ -63,7 +62,7 @@ static bool is_silent(const hazard_t *hazard, uint32_t margin_ms) {
 /** @param more_frames than debouncing needs */
 static bool takes_none(const hazard_t *hazard, uint32_t more_frames, uint32_t margin_ms) {
     const hazard_eps_t *eps = &hazard->eps;
-    const bool has_no_angle = (more_frames == 0u) ? (eps->bad_angles != 0u) : eps->is_angle_lost;
+    const bool has_no_angle = (more_frames == 0) ? (eps->bad_angles != 0) : eps->is_angle_lost;
 
     return hazard_is_hearing(hazard) && (has_no_angle || is_silent(hazard, margin_ms) ||
                                          (eps->bad_frames > more_frames) || (eps->alarm_frames > more_frames) ||
@@ -77,9 +76,9 @@ bool hazard_eps_takes_no_angle(const hazard_t *hazard) {
 
 /** The supervisor may know: it received each frame. */
 bool hazard_eps_perhaps_takes_none(const hazard_t *hazard) {
-    return takes_none(hazard, 0u, 0u);
+    return takes_none(hazard, 0, 0);
 }
 
 bool hazard_eps_in_angle_control(const hazard_t *hazard) {
-    return hazard->messages[AGV_MSG_EPS_STATUS].data[MODE_BYTE] == (uint8_t)ANGLE_MODE;
+    return hazard->messages[AGV_MSG_EPS_STATUS].data[MODE_BYTE] == ANGLE_MODE;
 }

@@ -22,7 +22,7 @@ static void extend_range(hazard_range_t *range, int32_t ddeg) {
 /** After a trip, what an EPS that takes no angle measures may be wrong. */
 static void forget_measured(hazard_t *hazard) {
     hazard->hold.first.any = false;
-    hazard->hold.measured_count = 0u;
+    hazard->hold.measured_count = 0;
 }
 
 /** Both mode bits: manual may end as late as they become MODE_INVALID. */
@@ -57,7 +57,7 @@ static hazard_range_t range_now(const hazard_t *hazard, uint32_t within_ms) {
     const hazard_hold_t *hold = &hazard->hold;
     hazard_range_t range = {hazard_angle_ddeg(hazard), hazard_angle_ddeg(hazard)};
 
-    for (uint32_t i = 0u; (i < HAZARD_ANGLES) && (i < hold->measured_count); i++) {
+    for (uint32_t i = 0; (i < HAZARD_ANGLES) && (i < hold->measured_count); i++) {
         if (hazard->t_ms - hold->measured_ms[i] <= within_ms) {
             extend_range(&range, hold->measured_ddeg[i]);
         }
@@ -80,13 +80,13 @@ bool hazard_hold_is_limited(const hazard_t *hazard, uint16_t value) {
     const hazard_recent_t *recent = &hazard->recent[AGV_MSG_STEERING_COMMAND];
     hazard_range_t range = range_now(hazard, FRESH_MS);
 
-    if (hazard->config->steering_fast_max_ddeg != 0u) {
+    if (hazard->config->steering_fast_max_ddeg != 0) {
         extend_range(&range, 0);
     }
     if (continues(hazard)) {
         extend_range(&range, (int32_t)hazard->commanded[AGV_MSG_STEERING_COMMAND] - CENTRE_DDEG);
     }
-    for (uint32_t i = 0u; (i < (uint32_t)HAZARD_RECENT) && (i < recent->next); i++) {
+    for (uint32_t i = 0; (i < HAZARD_RECENT) && (i < recent->next); i++) {
         if (hazard->t_ms - recent->at_ms[i] <= (uint64_t)hazard->config->steering_command_timeout_ms + FRESH_MS) {
             extend_range(&range, (int32_t)recent->value[i] - CENTRE_DDEG);
         }
@@ -103,12 +103,12 @@ static void trip_now(hazard_t *hazard, uint32_t within_ms) {
     hold->is_dropped = false;
     hold->first.any = false;
     hold->perhaps.any = false;
-    hold->kept_until_ms = 0u;
+    hold->kept_until_ms = 0;
 }
 
 void hazard_hold_trip(hazard_t *hazard) {
     /* An open output without a safe command: the trip came when the first frame did not leave. */
-    trip_now(hazard, (uint32_t)FRESH_MS + (hazard->closed ? 0u : hazard->config->tx_stalled_ms));
+    trip_now(hazard, (uint32_t)FRESH_MS + (hazard->closed ? 0 : hazard->config->tx_stalled_ms));
 }
 
 /** Manual was reported, or the EPS took no angle: it may have turned, and what it measured before is out of date. */
@@ -188,7 +188,7 @@ static void allow_again(hazard_t *hazard, uint16_t value) {
 
 /** Passed on for the AI computer: after a reset the safe commands may have ended already. */
 static bool is_passed_on(const hazard_t *hazard, uint16_t value) {
-    const bool may_pass = hazard->mode.autopilot || (hazard->config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL);
+    const bool may_pass = hazard->mode.autopilot || (hazard->config->gateway_in_manual == AGV_IN_MANUAL_ALL);
     const bool is_limited = hazard->limits_steering && hazard_reset_was_asked(hazard) && may_pass;
 
     return hazard->gateway && (is_limited || hazard_was_sent(hazard, AGV_MSG_STEERING_COMMAND, value));
@@ -196,7 +196,7 @@ static bool is_passed_on(const hazard_t *hazard, uint16_t value) {
 
 void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
     hazard_hold_t *hold = &hazard->hold;
-    const uint16_t value = (uint16_t)(frame->data[0] | ((uint32_t)frame->data[1] << 8u));
+    const uint16_t value = (uint16_t)(frame->data[0] | ((uint32_t)frame->data[1] << 8));
     const int32_t held_ddeg = (int32_t)value - CENTRE_DDEG;
 
     if (is_passed_on(hazard, value)) {
@@ -205,7 +205,7 @@ void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
         }
         return;
     }
-    if ((hold->last_ms == 0u) || (hazard->t_ms - hold->last_ms > NEW_HOLD_MS) || (value != hold->value) ||
+    if ((hold->last_ms == 0) || (hazard->t_ms - hold->last_ms > NEW_HOLD_MS) || (value != hold->value) ||
         (hold->last_ms < hazard->mode.handback_ms)) {
         hold->now = range_now(hazard, FRESH_MS);
         hold->is_wrong = false;

@@ -12,7 +12,7 @@ bool hazard_was_sent(const hazard_t *hazard, agv_message_t message, uint16_t val
     const uint32_t count = (recent->next < HAZARD_RECENT) ? recent->next : (uint32_t)HAZARD_RECENT;
     const uint64_t within_ms = (uint64_t)agv_config_get(hazard->config, message_deadline_setting(message)) + MARGIN_MS;
 
-    for (uint32_t i = 1u; i <= count; i++) {
+    for (uint32_t i = 1; i <= count; i++) {
         const uint32_t at = (recent->next - i) % HAZARD_RECENT;
         if (hazard->t_ms - recent->at_ms[at] > within_ms) {
             return false;
@@ -25,13 +25,13 @@ bool hazard_was_sent(const hazard_t *hazard, agv_message_t message, uint16_t val
 }
 
 static uint16_t value_of(agv_message_t message, const hal_can_frame_t *frame) {
-    return (message == AGV_MSG_STEERING_COMMAND) ? (uint16_t)(frame->data[0] | ((uint32_t)frame->data[1] << 8u))
+    return (message == AGV_MSG_STEERING_COMMAND) ? (uint16_t)(frame->data[0] | ((uint32_t)frame->data[1] << 8))
                                                  : frame->data[0];
 }
 
 static bool is_motion(agv_message_t message, uint16_t value) {
-    return ((message == AGV_MSG_GEAR_COMMAND) && (value != (uint16_t)AGV_GEAR_P)) ||
-           ((message == AGV_MSG_THROTTLE_COMMAND) && (value != 0u)) || (message == AGV_MSG_STEERING_COMMAND);
+    return ((message == AGV_MSG_GEAR_COMMAND) && (value != AGV_GEAR_P)) ||
+           ((message == AGV_MSG_THROTTLE_COMMAND) && (value != 0)) || (message == AGV_MSG_STEERING_COMMAND);
 }
 
 void hazard_passed(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
@@ -46,15 +46,15 @@ void hazard_passed(hazard_t *hazard, agv_message_t message, const hal_can_frame_
     }
     hazard_commanded(hazard, message, value);
     if (message == AGV_MSG_STEERING_COMMAND) {
-        hazard->untaken = hazard_eps_in_angle_control(hazard) ? 0u : hazard->untaken + 1u;
+        hazard->untaken = hazard_eps_in_angle_control(hazard) ? 0 : hazard->untaken + 1;
     }
     if (message == AGV_MSG_THROTTLE_COMMAND) {
-        hazard->throttle_is_newest = value != 0u;
+        hazard->throttle_is_newest = value != 0;
         hazard->throttle_ms = hazard->t_ms;
     }
     const bool is_hold = (message == AGV_MSG_STEERING_COMMAND) &&
                          (hazard->trip.tripped || hazard_is_safe_now(hazard, SAFE_MS) || is_limited);
-    if (is_motion(message, value) && !is_hold && !hazard_was_sent(hazard, message, value) && (hazard->false_ms == 0u)) {
+    if (is_motion(message, value) && !is_hold && !hazard_was_sent(hazard, message, value) && (hazard->false_ms == 0)) {
         hazard->false_ms = hazard->t_ms; /* 065h of a hold leaves before the other safe commands */
         hazard->false_is_065h = message == AGV_MSG_STEERING_COMMAND;
     }
@@ -62,11 +62,11 @@ void hazard_passed(hazard_t *hazard, agv_message_t message, const hal_can_frame_
 
 /** Something came at @p since_ms that the safe commands have to follow. @return whether they do not */
 static bool is_unanswered(const hazard_t *hazard, uint64_t *since_ms, uint32_t within_ms) {
-    if (*since_ms == 0u) {
+    if (*since_ms == 0) {
         return false;
     }
     if (!hazard->closed || (hazard->trip.last_ms >= *since_ms)) {
-        *since_ms = 0u;
+        *since_ms = 0;
         return false;
     }
     return hazard->t_ms - *since_ms > within_ms;
@@ -83,7 +83,7 @@ static void follow_stall(hazard_t *hazard) {
 }
 
 bool hazard_is_stalled(const hazard_t *hazard) {
-    return (hazard->stalled_ms != 0u) && (hazard->t_ms - hazard->stalled_ms <= MARGIN_MS);
+    return (hazard->stalled_ms != 0) && (hazard->t_ms - hazard->stalled_ms <= MARGIN_MS);
 }
 
 /**
@@ -99,7 +99,7 @@ static uint32_t answer_ms(const hazard_t *hazard) {
 /** The safe commands follow a 065h of theirs; where they are stalled, the output opens. */
 static uint32_t in_flight_ms(const hazard_t *hazard) {
     const bool waits = hazard->false_is_065h && hazard_is_stalled(hazard);
-    return (uint32_t)IN_FLIGHT_MS + (waits ? hazard->config->tx_stalled_ms : 0u);
+    return (uint32_t)IN_FLIGHT_MS + (waits ? hazard->config->tx_stalled_ms : 0);
 }
 
 void hazard_passed_tick(hazard_t *hazard) {
@@ -113,16 +113,16 @@ void hazard_passed_tick(hazard_t *hazard) {
     if (is_unanswered(hazard, &hazard->false_ms, in_flight_ms(hazard))) {
         hazard_found(hazard, HAZARD_FALSE_COMMAND, "the supervisor sent a command that the AI computer did not send");
     }
-    if ((hazard->t_ms % SLOT_MS) != 0u) {
+    if ((hazard->t_ms % SLOT_MS) != 0) {
         return;
     }
-    uint32_t sum = 0u;
-    for (unsigned i = 0u; i < HAZARD_FLOOD_SLOTS; i++) {
+    uint32_t sum = 0;
+    for (unsigned i = 0; i < HAZARD_FLOOD_SLOTS; i++) {
         sum += hazard->passed[i];
     }
     if (sum > (uint32_t)((DROP_RATE * NOMINAL_PER_S) + SPARE_PER_S)) {
         hazard_found(hazard, HAZARD_FLOOD, "the vehicle's bus is flooded through the gateway");
     }
-    hazard->passed_at = (hazard->passed_at + 1u) % HAZARD_FLOOD_SLOTS;
-    hazard->passed[hazard->passed_at] = 0u;
+    hazard->passed_at = (hazard->passed_at + 1) % HAZARD_FLOOD_SLOTS;
+    hazard->passed[hazard->passed_at] = 0;
 }

@@ -32,11 +32,11 @@ typedef struct {
 } row_t;
 
 static bool has_bit(const uint8_t data[AGV_DLC], uint8_t mask) {
-    return (data[AGV_DLC - 1] & mask) != 0u;
+    return (data[AGV_DLC - 1] & mask) != 0;
 }
 
 static bool has_alarm(const uint8_t data[AGV_DLC], uint8_t mask) {
-    return (data[4] & mask) != 0u;
+    return (data[4] & mask) != 0;
 }
 
 static bool is_no_angle_control(const uint8_t data[AGV_DLC], uint8_t mask) {
@@ -45,8 +45,7 @@ static bool is_no_angle_control(const uint8_t data[AGV_DLC], uint8_t mask) {
 
 static bool is_no_gear(const uint8_t data[AGV_DLC], uint8_t mask) {
     (void)mask;
-    return (data[0] != (uint8_t)AGV_GEAR_P) && (data[0] != (uint8_t)AGV_GEAR_R) && (data[0] != (uint8_t)AGV_GEAR_N) &&
-           (data[0] != (uint8_t)AGV_GEAR_D);
+    return (data[0] != AGV_GEAR_P) && (data[0] != AGV_GEAR_R) && (data[0] != AGV_GEAR_N) && (data[0] != AGV_GEAR_D);
 }
 
 static bool is_above(const uint8_t data[AGV_DLC], uint8_t mask) {
@@ -55,7 +54,7 @@ static bool is_above(const uint8_t data[AGV_DLC], uint8_t mask) {
 
 static bool is_no_angle(const uint8_t data[AGV_DLC], uint8_t mask) {
     (void)mask;
-    return (data[2] | ((uint32_t)data[3] << 8u)) > 18000u;
+    return (data[2] | ((uint32_t)data[3] << 8)) > 18000;
 }
 
 static uint8_t throttle_of(const hazard_t *hazard) {
@@ -65,7 +64,7 @@ static uint8_t throttle_of(const hazard_t *hazard) {
 /** 0 while 0A3h is silent or has no valid gear. */
 static uint8_t gear_of(const hazard_t *hazard) {
     const hazard_message_t *seen = &hazard->messages[AGV_MSG_GEAR_STATUS];
-    return (hazard->t_ms - seen->valid_ms > hazard->config->gear_status_timeout_ms) ? 0u : seen->valid[0];
+    return (hazard->t_ms - seen->valid_ms > hazard->config->gear_status_timeout_ms) ? 0 : seen->valid[0];
 }
 
 static bool is_steering_stuck(const hazard_t *hazard) {
@@ -79,7 +78,7 @@ static bool is_steering_stuck(const hazard_t *hazard) {
 }
 
 static bool is_throttle_in_park(const hazard_t *hazard) {
-    return (gear_of(hazard) == (uint8_t)AGV_GEAR_P) && (throttle_of(hazard) > IDLE_COUNTS);
+    return (gear_of(hazard) == AGV_GEAR_P) && (throttle_of(hazard) > IDLE_COUNTS);
 }
 
 static bool is_throttle_too_high(const hazard_t *hazard) {
@@ -93,18 +92,18 @@ static bool is_other_gear(const hazard_t *hazard) {
     const uint8_t gear = gear_of(hazard);
 
     return hazard->is_commanded[AGV_MSG_GEAR_COMMAND] && (throttle_of(hazard) > IDLE_COUNTS) &&
-           ((gear == (uint8_t)AGV_GEAR_D) || (gear == (uint8_t)AGV_GEAR_R)) &&
+           ((gear == AGV_GEAR_D) || (gear == AGV_GEAR_R)) &&
            ((uint16_t)gear != hazard->commanded[AGV_MSG_GEAR_COMMAND]);
 }
 
 static bool is_off_ignored(const hazard_t *hazard) {
-    return hazard->asked_off_ms != 0u;
+    return hazard->asked_off_ms != 0;
 }
 
 /** Neither, or both. */
 static bool is_without_mode(const hazard_t *hazard) {
     const hazard_message_t *status = &hazard->messages[AGV_MSG_VEHICLE_STATUS];
-    return status->has && (((status->data[MODE_BYTE] & MODE_BITS) == 0u) || hazard->mode.both);
+    return status->has && (((status->data[MODE_BYTE] & MODE_BITS) == 0) || hazard->mode.both);
 }
 
 static bool is_in_both_modes(const hazard_t *hazard) {
@@ -114,7 +113,7 @@ static bool is_in_both_modes(const hazard_t *hazard) {
 static bool is_command_too_fast(const hazard_t *hazard) {
     bool fast = false;
 
-    for (unsigned m = 0u; m < AGV_COMMAND_COUNT; m++) {
+    for (unsigned m = 0; m < AGV_COMMAND_COUNT; m++) {
         fast = fast || (hazard->messages[m].fast >= 2 * (int32_t)hazard->config->command_too_fast_gaps);
     }
     return fast;
@@ -143,25 +142,25 @@ static bool is_ai_side_dead(const hazard_t *hazard) {
 #define NO_SETTING AGV_SETTING_COUNT
 static const row_t ROWS[] = {
     {"the VCU is silent", STUCK, false, AGV_MSG_VEHICLE_STATUS, AGV_SETTING_vcu_heartbeat_timeout_ms, AGV_FAULT_NONE,
-     NULL, 0u, NULL},
+     NULL, 0, NULL},
     {"the EPS is silent", STUCK, false, AGV_MSG_STEERING_STATUS, AGV_SETTING_eps_heartbeat_timeout_ms, AGV_FAULT_NONE,
-     NULL, 0u, NULL},
+     NULL, 0, NULL},
     {"the AI computer is silent", STUCK, true, AGV_MSG_TURN_SIGNAL_COMMAND, AGV_SETTING_ai_heartbeat_timeout_ms,
-     AGV_FAULT_NONE, NULL, 0u, NULL},
+     AGV_FAULT_NONE, NULL, 0, NULL},
     {"168h is missing", SILENT, true, AGV_MSG_GEAR_COMMAND, AGV_SETTING_gear_command_timeout_ms, AGV_FAULT_NONE, NULL,
-     0u, NULL},
+     0, NULL},
     {"075h is missing", SILENT, true, AGV_MSG_THROTTLE_COMMAND, AGV_SETTING_throttle_command_timeout_ms, AGV_FAULT_NONE,
-     NULL, 0u, NULL},
+     NULL, 0, NULL},
     {"065h is missing", SILENT, true, AGV_MSG_STEERING_COMMAND, AGV_SETTING_steering_command_timeout_ms, AGV_FAULT_NONE,
-     NULL, 0u, NULL},
-    {"167h is missing", SILENT, false, AGV_MSG_EPS_STATUS, AGV_SETTING_eps_status_timeout_ms, AGV_FAULT_NONE, NULL, 0u,
+     NULL, 0, NULL},
+    {"167h is missing", SILENT, false, AGV_MSG_EPS_STATUS, AGV_SETTING_eps_status_timeout_ms, AGV_FAULT_NONE, NULL, 0,
      NULL},
     {"0A3h is missing", SILENT, false, AGV_MSG_GEAR_STATUS, AGV_SETTING_gear_status_timeout_ms,
-     AGV_FAULT_GEAR_STATUS_TIMEOUT, NULL, 0u, NULL},
+     AGV_FAULT_GEAR_STATUS_TIMEOUT, NULL, 0, NULL},
     {"050h is missing", SILENT, false, AGV_MSG_THROTTLE_STATUS, AGV_SETTING_throttle_status_timeout_ms,
-     AGV_FAULT_THROTTLE_STATUS_TIMEOUT, NULL, 0u, NULL},
+     AGV_FAULT_THROTTLE_STATUS_TIMEOUT, NULL, 0, NULL},
     {"101h is missing", SILENT, false, AGV_MSG_WHEEL_SPEED, AGV_SETTING_wheel_speed_timeout_ms,
-     AGV_FAULT_WHEEL_SPEED_TIMEOUT, NULL, 0u, NULL},
+     AGV_FAULT_WHEEL_SPEED_TIMEOUT, NULL, 0, NULL},
     {"the EPS reports a fault", SCORE, false, AGV_MSG_EPS_STATUS, NO_SETTING, AGV_FAULT_NONE, has_bit, 0xE8u, NULL},
     {"the EPS reports a supply fault", SCORE, false, AGV_MSG_EPS_STATUS, AGV_SETTING_eps_supply_fault_frames,
      AGV_FAULT_NONE, has_bit, 0x07u, NULL},
@@ -176,41 +175,40 @@ static const row_t ROWS[] = {
     {"the EPS is not in angle control", SCORE, true, AGV_MSG_EPS_STATUS, AGV_SETTING_eps_mode_frames, AGV_FAULT_NONE,
      is_no_angle_control, EPS_ANGLE_MODE, NULL},
     {"0A3h has an invalid gear", SCORE, true, AGV_MSG_GEAR_STATUS, AGV_SETTING_status_invalid_frames,
-     AGV_FAULT_GEAR_STATUS_INVALID, is_no_gear, 0u, NULL},
+     AGV_FAULT_GEAR_STATUS_INVALID, is_no_gear, 0, NULL},
     {"050h has an invalid throttle", SCORE, true, AGV_MSG_THROTTLE_STATUS, AGV_SETTING_status_invalid_frames,
-     AGV_FAULT_THROTTLE_STATUS_INVALID, is_above, 250u, NULL},
+     AGV_FAULT_THROTTLE_STATUS_INVALID, is_above, 250, NULL},
     {"067h has an invalid angle", SCORE, true, AGV_MSG_STEERING_STATUS, AGV_SETTING_status_invalid_frames,
-     AGV_FAULT_NONE, is_no_angle, 0u, NULL},
-    {"the steering is stuck", LEVEL, true, NONE, AGV_SETTING_steering_deviation_ms, AGV_FAULT_NONE, NULL, 0u,
+     AGV_FAULT_NONE, is_no_angle, 0, NULL},
+    {"the steering is stuck", LEVEL, true, NONE, AGV_SETTING_steering_deviation_ms, AGV_FAULT_NONE, NULL, 0,
      is_steering_stuck},
-    {"throttle with gear P", LEVEL, true, NONE, AGV_SETTING_throttle_in_park_ms, AGV_FAULT_THROTTLE_IN_PARK, NULL, 0u,
+    {"throttle with gear P", LEVEL, true, NONE, AGV_SETTING_throttle_in_park_ms, AGV_FAULT_THROTTLE_IN_PARK, NULL, 0,
      is_throttle_in_park},
     {"more throttle than commanded", LEVEL, true, NONE, AGV_SETTING_throttle_deviation_ms, AGV_FAULT_THROTTLE_DEVIATION,
-     NULL, 0u, is_throttle_too_high},
-    {"another gear than commanded", LEVEL, true, NONE, AGV_SETTING_gear_deviation_ms, AGV_FAULT_GEAR_DEVIATION, NULL,
-     0u, is_other_gear},
+     NULL, 0, is_throttle_too_high},
+    {"another gear than commanded", LEVEL, true, NONE, AGV_SETTING_gear_deviation_ms, AGV_FAULT_GEAR_DEVIATION, NULL, 0,
+     is_other_gear},
     {"autopilot off is ignored", LEVEL, true, NONE, AGV_SETTING_autopilot_off_ms, AGV_FAULT_AUTOPILOT_OFF_IGNORED, NULL,
-     0u, is_off_ignored},
-    {"no valid mode is reported", LEVEL, false, NONE, AGV_SETTING_mode_none_ms, AGV_FAULT_NONE, NULL, 0u,
+     0, is_off_ignored},
+    {"no valid mode is reported", LEVEL, false, NONE, AGV_SETTING_mode_none_ms, AGV_FAULT_NONE, NULL, 0,
      is_without_mode},
-    {"both modes are reported", LEVEL, false, NONE, AGV_SETTING_mode_invalid_ms, AGV_FAULT_NONE, NULL, 0u,
+    {"both modes are reported", LEVEL, false, NONE, AGV_SETTING_mode_invalid_ms, AGV_FAULT_NONE, NULL, 0,
      is_in_both_modes},
-    {"commands come too fast", LEVEL, true, NONE, NO_SETTING, AGV_FAULT_COMMAND_TOO_FAST, NULL, 0u,
-     is_command_too_fast},
-    {"an invalid command", LEVEL, true, NONE, NO_SETTING, AGV_FAULT_NONE, NULL, 0u, is_command_bad},
-    {"the supervisor's transmitter has failed", LEVEL, false, NONE, AGV_SETTING_tx_stalled_ms, AGV_FAULT_NONE, NULL, 0u,
+    {"commands come too fast", LEVEL, true, NONE, NO_SETTING, AGV_FAULT_COMMAND_TOO_FAST, NULL, 0, is_command_too_fast},
+    {"an invalid command", LEVEL, true, NONE, NO_SETTING, AGV_FAULT_NONE, NULL, 0, is_command_bad},
+    {"the supervisor's transmitter has failed", LEVEL, false, NONE, AGV_SETTING_tx_stalled_ms, AGV_FAULT_NONE, NULL, 0,
      is_transmitter_dead},
-    {"the AI side is stalled", LEVEL, true, NONE, AGV_SETTING_tx_stalled_ms, AGV_FAULT_AI_BUS_OFF, NULL, 0u,
+    {"the AI side is stalled", LEVEL, true, NONE, AGV_SETTING_tx_stalled_ms, AGV_FAULT_AI_BUS_OFF, NULL, 0,
      is_ai_side_dead},
 };
 enum { ROW_COUNT = sizeof ROWS / sizeof ROWS[0] };
-_Static_assert(sizeof ROWS / sizeof ROWS[0] <= (unsigned)HAZARD_ROWS_MAX, "a row has no place in hazard_t");
+_Static_assert(sizeof ROWS / sizeof ROWS[0] <= HAZARD_ROWS_MAX, "a row has no place in hazard_t");
 
 /** For how long it may be; @param value of its setting. */
 static uint32_t limit_ms(const hazard_t *hazard, const row_t *row, uint32_t value) {
-    uint32_t limit = MARGIN_MS + ((row->form == LEVEL) ? value : 0u);
+    uint32_t limit = MARGIN_MS + ((row->form == LEVEL) ? value : 0);
 
-    limit += (row->engaged && (row->form <= STUCK)) ? hazard->config->engaged_grace_ms : 0u;
+    limit += (row->engaged && (row->form <= STUCK)) ? hazard->config->engaged_grace_ms : 0;
     if (row->message == AGV_MSG_TURN_SIGNAL_COMMAND) {
         limit += hazard->config->ai_never_seen_timeout_ms;
     }
@@ -221,24 +219,24 @@ static uint32_t limit_ms(const hazard_t *hazard, const row_t *row, uint32_t valu
 }
 
 void hazard_rows_init(hazard_t *hazard) {
-    for (unsigned r = 0u; r < (unsigned)ROW_COUNT; r++) {
+    for (unsigned r = 0; r < ROW_COUNT; r++) {
         const row_t *row = &ROWS[r];
         const uint32_t none = (row->form == SCORE) ? 1u : 0u;
         const uint32_t value = (row->setting == NO_SETTING) ? none : agv_config_get(hazard->config, row->setting);
         hazard->thresholds[r] = value;
         hazard->limits_ms[r] = limit_ms(hazard, row, value);
-        if ((row->form == SCORE) && (hazard->score_counts[row->message] < (uint8_t)HAZARD_SCORES_MAX)) {
+        if ((row->form == SCORE) && (hazard->score_counts[row->message] < HAZARD_SCORES_MAX)) {
             hazard->score_rows[row->message][hazard->score_counts[row->message]] = (uint8_t)r;
             hazard->score_counts[row->message]++;
         }
         const bool only_warns = (row->fault != AGV_FAULT_NONE) && !agv_config_is_trip(hazard->config, row->fault);
-        const bool has_no_status_frame = hazard->config->status_frame_id == 0u; /* the integrator's choice */
+        const bool has_no_status_frame = hazard->config->status_frame_id == 0; /* the integrator's choice */
         hazard->off[r] = only_warns || ((row->holds == is_transmitter_dead) && has_no_status_frame);
     }
 }
 
 void hazard_rows_frame(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV_DLC]) {
-    for (unsigned i = 0u; i < hazard->score_counts[message]; i++) {
+    for (unsigned i = 0; i < hazard->score_counts[message]; i++) {
         const unsigned r = hazard->score_rows[message][i];
         const row_t *row = &ROWS[r];
         if (row->engaged && !hazard->mode.autopilot) {
@@ -301,7 +299,7 @@ static void add_up(hazard_t *hazard, unsigned r) {
     *budget_ms = (*budget_ms < 0) ? 0 : *budget_ms;
     const uint32_t close = ((uint32_t)*budget_ms * CLOSE) / hazard->limits_ms[r];
     if (close > hazard->closeness[r]) {
-        hazard->closeness[r] = (uint8_t)((close > (uint32_t)CLOSE) ? CLOSE : close);
+        hazard->closeness[r] = (uint8_t)((close > CLOSE) ? CLOSE : close);
     }
     if (*budget_ms > (int32_t)hazard->limits_ms[r]) {
         hazard_found(hazard, (row->form <= STUCK) ? HAZARD_NOT_STOPPING : HAZARD_FALSE_NODE, row->name);
@@ -314,11 +312,11 @@ static bool is_budget_of_engagement(const row_t *row) {
 }
 
 void hazard_rows_engage(hazard_t *hazard) {
-    for (unsigned r = 0u; r < (unsigned)ROW_COUNT; r++) {
+    for (unsigned r = 0; r < ROW_COUNT; r++) {
         int32_t *budget_ms = &hazard->budgets_ms[r];
         if (ROWS[r].holds == is_steering_stuck) {
             *budget_ms = 0; /* a reading that moves to the command and back may be progress, once in each engagement */
-        } else if (is_budget_of_engagement(&ROWS[r]) && (*budget_ms > (int32_t)MARGIN_MS)) {
+        } else if (is_budget_of_engagement(&ROWS[r]) && (*budget_ms > MARGIN_MS)) {
             *budget_ms = (int32_t)MARGIN_MS;
         } else {
             /* goes on */
@@ -327,14 +325,14 @@ void hazard_rows_engage(hazard_t *hazard) {
 }
 
 void hazard_rows_tick(hazard_t *hazard) {
-    if ((hazard->t_ms % STEP_MS) != 0u) {
+    if ((hazard->t_ms % STEP_MS) != 0) {
         return;
     }
     if (!hazard->closed || hazard_is_safe_now(hazard, REACTED_MS) || (hazard_speed_mm_s(hazard) < MOVING_MM_S)) {
         memset(hazard->budgets_ms, 0, sizeof hazard->budgets_ms);
         return;
     }
-    for (unsigned r = 0u; r < (unsigned)ROW_COUNT; r++) {
+    for (unsigned r = 0; r < ROW_COUNT; r++) {
         if (!hazard->off[r] && !is_in_grace(hazard, &ROWS[r])) {
             add_up(hazard, r);
         }

@@ -28,22 +28,22 @@ static void begin_trip(hazard_t *hazard) {
     forget_press(hazard, &trip->button);
     forget_press(hazard, &trip->reported);
     forget_press(hazard, &trip->pin);
-    trip->unparked_ms = 0u;
-    trip->engaged_ms = 0u;
-    trip->confirmed_ms = 0u;
+    trip->unparked_ms = 0;
+    trip->engaged_ms = 0;
+    trip->confirmed_ms = 0;
     hazard_hold_trip(hazard);
 }
 
 /** Gateway: the AI computer asked for the same as the safe 43Fh, which is passed on with its alive counter. */
 static bool is_of_ai(const hazard_t *hazard, uint8_t counter) {
     const uint64_t asked_ms = hazard->asked_all_ms[counter];
-    return hazard->gateway && (asked_ms != 0u) && (hazard->t_ms - asked_ms <= SPEED_SLOT_MS);
+    return hazard->gateway && (asked_ms != 0) && (hazard->t_ms - asked_ms <= SPEED_SLOT_MS);
 }
 
 void hazard_safe_frame(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
     hazard_trip_t *trip = &hazard->trip;
 
-    if ((message == AGV_MSG_GEAR_COMMAND) && (frame->data[0] == (uint8_t)AGV_GEAR_P)) {
+    if ((message == AGV_MSG_GEAR_COMMAND) && (frame->data[0] == AGV_GEAR_P)) {
         trip->parks = trip->parks || trip->tripped;
     }
     if ((message != AGV_MSG_TURN_SIGNAL_COMMAND) || (memcmp(frame->data, SAFE_SIGNALS, sizeof SAFE_SIGNALS) != 0) ||
@@ -67,15 +67,15 @@ static void check_confirmation(hazard_t *hazard) {
     const hazard_message_t *gear = &hazard->messages[AGV_MSG_GEAR_STATUS];
     const bool alive = is_fresh(hazard, AGV_MSG_VEHICLE_STATUS, hazard->config->vcu_heartbeat_timeout_ms);
     const bool off = alive && !hazard->mode.autopilot;
-    const bool parked = gear->has_valid && (gear->valid[0] == (uint8_t)AGV_GEAR_P) &&
+    const bool parked = gear->has_valid && (gear->valid[0] == AGV_GEAR_P) &&
                         is_fresh(hazard, AGV_MSG_GEAR_STATUS, hazard->config->gear_status_timeout_ms);
 
-    trip->engaged_ms += off ? 0u : 1u;
-    trip->unparked_ms += (parked || !trip->parks) ? 0u : 1u;
-    trip->confirmed_ms = (off && parked) ? trip->confirmed_ms + 1u : 0u;
+    trip->engaged_ms += off ? 0 : 1;
+    trip->unparked_ms += (parked || !trip->parks) ? 0 : 1;
+    trip->confirmed_ms = (off && parked) ? trip->confirmed_ms + 1 : 0;
     if (trip->confirmed_ms >= hazard->config->confirmed_ms) {
-        trip->engaged_ms = 0u;
-        trip->unparked_ms = 0u;
+        trip->engaged_ms = 0;
+        trip->unparked_ms = 0;
     }
     if (trip->engaged_ms > (uint32_t)hazard->config->confirm_timeout_ms + CONFIRM_MARGIN_MS) {
         hazard_found(hazard, HAZARD_UNCONFIRMED, "the autopilot is not confirmed as off");
@@ -102,15 +102,15 @@ static void follow_button(hazard_t *hazard, hazard_button_t *button, bool down, 
  */
 void hazard_safe_reported(hazard_t *hazard, const uint8_t data[AGV_DLC]) {
     hazard_button_t *button = &hazard->trip.reported;
-    const bool down = (data[FLAGS_BYTE] & AGV_VCU_FLAG_BUTTON_1) != 0u;
-    const bool lost = (data[ALARMS_BYTE] & (AGV_VCU_ALARM_REMOTE_SIGNAL_LOST | AGV_VCU_ALARM_REMOTE_POWER_LOST)) != 0u;
+    const bool down = (data[FLAGS_BYTE] & AGV_VCU_FLAG_BUTTON_1) != 0;
+    const bool lost = (data[ALARMS_BYTE] & (AGV_VCU_ALARM_REMOTE_SIGNAL_LOST | AGV_VCU_ALARM_REMOTE_POWER_LOST)) != 0;
 
     if (!down) {
-        button->ups = (button->ups < (uint32_t)UPS_MAX) ? button->ups + 1u : button->ups;
+        button->ups = (button->ups < UPS_MAX) ? button->ups + 1 : button->ups;
     }
-    button->is_glitch = button->ups < (uint32_t)UPS_OF_RELEASE;
+    button->is_glitch = button->ups < UPS_OF_RELEASE;
     if (down) {
-        button->ups -= (button->ups != 0u) ? 1u : 0u;
+        button->ups -= (button->ups != 0) ? 1 : 0;
     }
     if (down || !lost) {
         follow_button(hazard, button, down, hazard->config->reset_hold_ms - (uint32_t)PRESS_MARGIN_MS);
@@ -135,9 +135,9 @@ static bool has_ended(hazard_t *hazard) {
 
 bool hazard_reset_was_asked(const hazard_t *hazard) {
     const hazard_trip_t *trip = &hazard->trip;
-    const bool by_remote = (hazard->config->reset_input != (uint32_t)AGV_RESET_INPUT_PIN) &&
-                           (trip->button.released || trip->reported.released);
-    const bool by_pin = (hazard->config->reset_input != (uint32_t)AGV_RESET_INPUT_CAN) && trip->pin.released;
+    const bool by_remote =
+        (hazard->config->reset_input != AGV_RESET_INPUT_PIN) && (trip->button.released || trip->reported.released);
+    const bool by_pin = (hazard->config->reset_input != AGV_RESET_INPUT_CAN) && trip->pin.released;
     return by_remote || by_pin;
 }
 
@@ -168,7 +168,7 @@ static void check_stopping(hazard_t *hazard) {
     const int32_t before_mm_s = hazard->speeds_mm_s[hazard->speed_at];
 
     hazard->speeds_mm_s[hazard->speed_at] = now_mm_s;
-    hazard->speed_at = (hazard->speed_at + 1u) % HAZARD_SPEEDS;
+    hazard->speed_at = (hazard->speed_at + 1) % HAZARD_SPEEDS;
     if (!hazard->closed || !hazard->trip.tripped || (now_mm_s < MOVING_MM_S) ||
         (before_mm_s - now_mm_s >= SLOWER_MM_S) || hazard_is_said_to_stand(hazard) ||
         is_silent_after_standing(hazard)) {
@@ -219,15 +219,15 @@ void hazard_safe_tick(hazard_t *hazard) {
     const bool was_closed = trip->was_closed;
 
     follow_transmitter(hazard);
-    follow_button(hazard, &trip->button, hazard->view.vehicle.button_1, 0u);
-    follow_button(hazard, &trip->pin, hazard->view.pin_is_down, 0u);
+    follow_button(hazard, &trip->button, hazard->view.vehicle.button_1, 0);
+    follow_button(hazard, &trip->pin, hazard->view.pin_is_down, 0);
     check_reset(hazard, was_closed);
     follow_output(hazard, was_closed);
     const bool hangs = hazard->view.is_halted; /* the watchdog ends that, after its period */
     if (trip->tripped && hazard->closed && !hangs) {
         check_confirmation(hazard);
     }
-    if ((hazard->t_ms % SPEED_SLOT_MS) == 0u) {
+    if ((hazard->t_ms % SPEED_SLOT_MS) == 0) {
         check_stopping(hazard);
     }
 }

@@ -35,7 +35,7 @@ static int32_t vcu_speed_mm_s(const hazard_t *hazard) {
 static bool is_contradicted(const hazard_t *hazard) {
     return is_fresh(hazard, AGV_MSG_WHEEL_SPEED, FRESH_MS) && wheels_are_below(hazard, STANDS_MM_S) &&
            is_fresh(hazard, AGV_MSG_VEHICLE_STATUS, hazard->config->vcu_heartbeat_timeout_ms) &&
-           (vcu_speed_mm_s(hazard) > (int32_t)DIFFERS_MM_S);
+           (vcu_speed_mm_s(hazard) > DIFFERS_MM_S);
 }
 
 static bool is_doubted(const hazard_t *hazard) {
@@ -55,7 +55,7 @@ static void follow_contradiction(hazard_t *hazard) {
 void hazard_speed_tick(hazard_t *hazard) {
     const int32_t limit_mm_s = hazard->config->standstill_speed_mm_s + MARGIN_MM_S;
 
-    if ((hazard->t_ms % (uint64_t)STEP_MS) == 0u) {
+    if ((hazard->t_ms % STEP_MS) == 0) {
         follow_contradiction(hazard);
     }
     if (is_fresh(hazard, AGV_MSG_WHEEL_SPEED, FRESH_MS) && wheels_are_below(hazard, limit_mm_s) &&
@@ -78,10 +78,10 @@ static bool is_too_early(const hazard_t *hazard) {
 
 /** The supervisor commands P, or passes it on. After a trip the first one counts: then it goes on. */
 void hazard_park_frame(hazard_t *hazard) {
-    const bool counts = (hazard->config->park == (uint16_t)AGV_PARK_AT_STANDSTILL) && hazard->view.output_closed &&
-                        !hazard->trip.parked;
+    const bool counts =
+        (hazard->config->park == AGV_PARK_AT_STANDSTILL) && hazard->view.output_closed && !hazard->trip.parked;
 
-    if (counts && is_too_early(hazard) && (hazard_speed_mm_s(hazard) > (int32_t)MOVING_MM_S) &&
+    if (counts && is_too_early(hazard) && (hazard_speed_mm_s(hazard) > MOVING_MM_S) &&
         (hazard->t_ms - hazard->stood_ms > STOOD_MS)) {
         hazard_found(hazard, HAZARD_PARK, "P comes in motion");
     }

@@ -9,7 +9,7 @@ enum { THROTTLE_MAX = 250, ANGLE_MAX = 18000, FALL_COUNTS = 25, FAST_CAP = 3, RI
 enum { MODE_BYTE = 6, MANUAL_BIT = 0x40, AUTOPILOT_BIT = 0x80, REENGAGE_MS = 100, SWING_MARGIN_MS = 200 };
 
 static uint16_t word_at(const uint8_t *data, unsigned at) {
-    return (uint16_t)(data[at] | ((uint32_t)data[at + 1u] << 8u));
+    return (uint16_t)(data[at] | ((uint32_t)data[at + 1] << 8));
 }
 
 static bool is_gear(uint8_t gear) {
@@ -23,11 +23,11 @@ static bool is_usable(agv_message_t message, const uint8_t *data) {
         return is_gear(data[0]);
     case AGV_MSG_THROTTLE_COMMAND:
     case AGV_MSG_THROTTLE_STATUS:
-        return data[0] <= (uint8_t)THROTTLE_MAX;
+        return data[0] <= THROTTLE_MAX;
     case AGV_MSG_STEERING_COMMAND:
-        return word_at(data, 0u) <= (uint16_t)ANGLE_MAX;
+        return word_at(data, 0) <= ANGLE_MAX;
     case AGV_MSG_STEERING_STATUS:
-        return word_at(data, 2u) <= (uint16_t)ANGLE_MAX;
+        return word_at(data, 2) <= ANGLE_MAX;
     default:
         return true;
     }
@@ -110,8 +110,8 @@ static void begin_engagement(hazard_t *hazard) {
     uint64_t *oldest_ms = &mode->begun_ms[mode->begun_count % HAZARD_ENGAGEMENTS];
 
     mode->engaged_ms = hazard->t_ms;
-    mode->graced = (mode->begun_count < (uint32_t)HAZARD_ENGAGEMENTS) ||
-                   (hazard->t_ms - *oldest_ms > hazard->config->mode_flapping_ms);
+    mode->graced =
+        (mode->begun_count < HAZARD_ENGAGEMENTS) || (hazard->t_ms - *oldest_ms > hazard->config->mode_flapping_ms);
     if (!hazard->trip.tripped) {
         *oldest_ms = hazard->t_ms;
         mode->begun_count++;
@@ -126,12 +126,12 @@ static void follow_engagement(hazard_t *hazard, bool autopilot, bool alone) {
     hazard_mode_t *mode = &hazard->mode;
 
     if (alone && !mode->engaged) {
-        if ((mode->begun_count == 0u) || (hazard->t_ms - mode->ended_ms >= hazard->config->reengage_ms)) {
+        if ((mode->begun_count == 0) || (hazard->t_ms - mode->ended_ms >= hazard->config->reengage_ms)) {
             begin_engagement(hazard);
         }
         mode->engaged = true;
     }
-    mode->clear_frames = autopilot ? 0u : mode->clear_frames + 1u;
+    mode->clear_frames = autopilot ? 0 : mode->clear_frames + 1;
     if (mode->engaged && (mode->clear_frames >= hazard->config->mode_frames)) {
         mode->engaged = false;
         mode->ended_ms = hazard->t_ms;
@@ -159,7 +159,7 @@ static void note_mode(hazard_t *hazard, uint8_t bits) {
 
 /** Whether 050h was commanded to rise shortly before. */
 static bool may_have_risen(const hazard_t *hazard) {
-    return (hazard->throttle_rises_ms != 0u) && (hazard->t_ms - hazard->throttle_rises_ms <= RISES_MS);
+    return (hazard->throttle_rises_ms != 0) && (hazard->t_ms - hazard->throttle_rises_ms <= RISES_MS);
 }
 
 /**
@@ -171,13 +171,13 @@ static void note_throttle(hazard_t *hazard, uint8_t value) {
         hazard->throttle_high = (uint16_t)(hazard->throttle_high + (value - hazard->throttle_seen));
     }
     hazard->throttle_seen = value;
-    if ((value + FALL_COUNTS <= hazard->throttle_high) || (hazard->throttle_high_ms == 0u)) {
+    if ((value + FALL_COUNTS <= hazard->throttle_high) || (hazard->throttle_high_ms == 0)) {
         hazard->throttle_before = hazard->throttle_high;
         hazard->throttle_before_ms = hazard->throttle_high_ms;
         hazard->throttle_high = value;
         hazard->throttle_high_ms = hazard->t_ms;
     }
-    if ((hazard->throttle_before_ms != 0u) && (value >= hazard->throttle_before)) {
+    if ((hazard->throttle_before_ms != 0) && (value >= hazard->throttle_before)) {
         hazard->throttle_high_ms = hazard->throttle_before_ms;
     }
     hazard->throttle_high = (value > hazard->throttle_high) ? value : hazard->throttle_high;
@@ -188,7 +188,7 @@ static void note_throttle(hazard_t *hazard, uint8_t value) {
  * steering that follows.
  */
 static bool is_command_swinging(const hazard_t *hazard) {
-    return (hazard->swung_ms != 0u) &&
+    return (hazard->swung_ms != 0) &&
            (hazard->t_ms - hazard->swung_ms <= (uint64_t)hazard->config->steering_deviation_ms + SWING_MARGIN_MS);
 }
 
@@ -196,7 +196,7 @@ static void note_command_angle(hazard_t *hazard, uint16_t angle_raw) {
     hazard->lowest_raw = (angle_raw < hazard->lowest_raw) ? angle_raw : hazard->lowest_raw;
     hazard->highest_raw = (angle_raw > hazard->highest_raw) ? angle_raw : hazard->highest_raw;
     if ((uint32_t)hazard->highest_raw > hazard->lowest_raw + hazard->config->steering_deviation_ddeg) {
-        hazard->swung_ms = hazard->is_commanded[AGV_MSG_STEERING_COMMAND] ? hazard->t_ms : 0u;
+        hazard->swung_ms = hazard->is_commanded[AGV_MSG_STEERING_COMMAND] ? hazard->t_ms : 0;
         hazard->lowest_raw = angle_raw;
         hazard->highest_raw = angle_raw;
     }
@@ -224,7 +224,7 @@ static void note_angle(hazard_t *hazard) {
 }
 
 void hazard_wire_status(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
-    if ((frame->flags != 0u) || (frame->length != AGV_DLC)) {
+    if ((frame->flags != 0) || (frame->length != AGV_DLC)) {
         return;
     }
     note(hazard, message, frame->data);
@@ -249,7 +249,7 @@ static void note_gap(hazard_t *hazard, agv_message_t message) {
     const int32_t cap = FAST_CAP * (int32_t)hazard->config->command_too_fast_gaps;
 
     if (seen->has) {
-        seen->fast += (gap_us < (uint64_t)agv_message_cycle_ms(message) * US_PER_MS / 2u) ? 1 : -1;
+        seen->fast += (gap_us < (uint64_t)agv_message_cycle_ms(message) * US_PER_MS / 2) ? 1 : -1;
         seen->fast = (seen->fast < 0) ? 0 : seen->fast;
         seen->fast = (seen->fast > cap) ? cap : seen->fast;
     }
@@ -266,7 +266,7 @@ static void note_recent(hazard_t *hazard, agv_message_t message, uint16_t value)
 /** A throttle that is commanded as high as it is may rise: then an earlier fall still counts. */
 void hazard_commanded(hazard_t *hazard, agv_message_t message, uint16_t value) {
     if ((message == AGV_MSG_THROTTLE_COMMAND) && (value >= hazard->messages[AGV_MSG_THROTTLE_STATUS].valid[0])) {
-        hazard->throttle_before_ms = 0u;
+        hazard->throttle_before_ms = 0;
     }
     if ((message == AGV_MSG_THROTTLE_COMMAND) && (value > hazard->throttle_seen)) {
         hazard->throttle_rises_ms = hazard->t_ms;
@@ -286,7 +286,7 @@ static bool is_deaf_to_ai(const hazard_t *hazard) {
 }
 
 void hazard_wire_command(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
-    const bool whole = (frame->flags == 0u) && (frame->length == AGV_DLC);
+    const bool whole = (frame->flags == 0) && (frame->length == AGV_DLC);
 
     if ((!whole || !is_usable(message, frame->data)) && !is_deaf_to_ai(hazard)) {
         hazard->has_bad_command = hazard->has_bad_command || hazard->mode.autopilot;
@@ -295,7 +295,7 @@ void hazard_wire_command(hazard_t *hazard, agv_message_t message, const hal_can_
     if (!whole) {
         return;
     }
-    const uint16_t value = (message == AGV_MSG_STEERING_COMMAND) ? word_at(frame->data, 0u) : frame->data[0];
+    const uint16_t value = (message == AGV_MSG_STEERING_COMMAND) ? word_at(frame->data, 0) : frame->data[0];
     note_gap(hazard, message);
     note(hazard, message, frame->data);
     if (is_usable(message, frame->data)) {
@@ -307,7 +307,7 @@ void hazard_wire_command(hazard_t *hazard, agv_message_t message, const hal_can_
     if (message == AGV_MSG_TURN_SIGNAL_COMMAND) {
         agv_turn_signal_command_t command;
         (void)agv_unpack_turn_signal_command(&command, frame->data);
-        hazard->asked_off_ms = command.autopilot_off ? hazard->t_ms : 0u;
+        hazard->asked_off_ms = command.autopilot_off ? hazard->t_ms : 0;
         if (command.autopilot_off && command.turn_left_on && command.turn_right_on && command.headlight_on) {
             hazard->asked_all_ms[command.alive_counter] = hazard->t_ms;
         }

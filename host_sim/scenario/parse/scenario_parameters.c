@@ -52,8 +52,8 @@ const yaml_key_t SCENARIO_PARAMETER_ROWS[SCENARIO_PARAMETERS] = {
 };
 
 const yaml_key_t *scenario_parameter(uint32_t parameter) {
-    size_t bit = 0u;
-    while ((bit < SCENARIO_PARAMETERS - 1u) && ((parameter >> bit) != 1u)) {
+    size_t bit = 0;
+    while ((bit < SCENARIO_PARAMETERS - 1) && ((parameter >> bit) != 1)) {
         bit++;
     }
     return &SCENARIO_PARAMETER_ROWS[bit];

@@ -30,7 +30,7 @@ const yaml_word_t SCENARIO_CAUSES[] = {{"power-on", HAL_RESET_POWER_ON},
                                        {NULL, 0}};
 
 bool scenario_parse_time(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t *ms) {
-    return scenario_parse_ms(reader, node, what, 0u, SCENARIO_DURATION_MAX_MS, ms);
+    return scenario_parse_ms(reader, node, what, 0, SCENARIO_DURATION_MAX_MS, ms);
 }
 
 bool scenario_parse_ms(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t lowest,
@@ -77,7 +77,7 @@ bool scenario_parse_fault(const yaml_reader_t *reader, const yaml_node_t *node, 
     }
     char meant[SUGGEST_SIZE];
     suggestion_t suggestion = suggest_begin(text, strlen(text));
-    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+    for (uint32_t i = 0; i < AGV_FAULT_COUNT; i++) {
         const char *name = agv_fault_name((agv_fault_t)i);
         suggest_offer(&suggestion, name, strlen(name));
     }
@@ -92,7 +92,7 @@ static bool read_name(const yaml_reader_t *reader, const yaml_node_t *node, void
         return false;
     }
     if (strlen(text) >= sizeof scenario->name) {
-        return yaml_reader_fail(reader, node, "name: longer than %u bytes", SCENARIO_TEXT_MAX - 1u);
+        return yaml_reader_fail(reader, node, "name: longer than %u bytes", SCENARIO_TEXT_MAX - 1);
     }
     if (!text_is_one_line(text)) {
         return yaml_reader_fail(reader, node, "name: must be one line of text");
@@ -124,7 +124,7 @@ static bool read_shown(const yaml_reader_t *reader, const yaml_node_t *node, voi
 
 static bool read_shows(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     return yaml_reader_list(reader, node, "shows", read_shown, target) &&
-           ((((const scenario_t *)target)->shows_count > 0u) ||
+           ((((const scenario_t *)target)->shows_count > 0) ||
             yaml_reader_fail(reader, node, "shows: give at least one requirement or fault"));
 }
 
@@ -143,9 +143,9 @@ static bool read_config(const yaml_reader_t *reader, const yaml_node_t *node, vo
     }
     scenario->config.topology = topology;
     scenario->config.id_set = id_set;
-    for (uint16_t i = 0u; i < AGV_SETTING_COUNT; i++) {
+    for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
         const char *name = agv_setting_info(i)->name;
-        if ((scenario->lines.settings[i] != 0u) && ((strcmp(name, "topology") == 0) || (strcmp(name, "id_set") == 0))) {
+        if ((scenario->lines.settings[i] != 0) && ((strcmp(name, "topology") == 0) || (strcmp(name, "id_set") == 0))) {
             return report_at(reader->file, scenario->lines.settings[i], "%s: belongs to the top level of the file",
                              name);
         }
@@ -165,11 +165,11 @@ static const yaml_word_t WATCHDOGS[] = {{"fitted", 0}, {"none", -1}, {NULL, 0}};
 #define MEMBER(kind, key, ...) YAML_##kind(key, scenario_t, __VA_ARGS__)
 
 static const char *fault_name(size_t index) {
-    return (index < (size_t)AGV_FAULT_COUNT) ? agv_fault_name((agv_fault_t)index) : NULL;
+    return (index < AGV_FAULT_COUNT) ? agv_fault_name((agv_fault_t)index) : NULL;
 }
 
 static const char *message_name(size_t index) {
-    return (index < (size_t)AGV_MSG_COUNT) ? agv_message_name((agv_message_t)index) : NULL;
+    return (index < AGV_MSG_COUNT) ? agv_message_name((agv_message_t)index) : NULL;
 }
 
 const yaml_shape_t SCENARIO_MESSAGE_SHAPE = {.kind = YAML_KIND_NAMES, .name = message_name};
@@ -235,14 +235,14 @@ static bool is_before_end(const scenario_t *scenario, const char *file, size_t l
 }
 
 static bool steps_fit(const scenario_t *scenario, const char *file) {
-    uint32_t last_ms = 0u; /* of those that wait for no event */
+    uint32_t last_ms = 0; /* of those that wait for no event */
 
-    for (size_t i = 0u; i < scenario->step_count; i++) {
+    for (size_t i = 0; i < scenario->step_count; i++) {
         const scenario_step_t *step = &scenario->steps[i];
         if (!is_before_end(scenario, file, step->line, step->at_ms)) {
             return false;
         }
-        if (step->after.kind != (uint8_t)SCENARIO_FROM_START) {
+        if (step->after.kind != SCENARIO_FROM_START) {
             continue;
         }
         if (step->at_ms < last_ms) {
@@ -257,16 +257,16 @@ static bool expectations_fit(const scenario_t *scenario, const char *file) {
     const scenario_expect_t *expect = &scenario->expect;
     bool good = true;
 
-    for (size_t i = 0u; good && (i < expect->vehicle.count); i++) {
+    for (size_t i = 0; good && (i < expect->vehicle.count); i++) {
         good = is_before_end(scenario, file, expect->vehicle.items[i].line, expect->vehicle.items[i].at_ms.to);
     }
-    for (size_t i = 0u; good && (i < expect->leds.count); i++) {
+    for (size_t i = 0; good && (i < expect->leds.count); i++) {
         good = is_before_end(scenario, file, expect->leds.items[i].line, expect->leds.items[i].at_ms.to);
     }
-    for (size_t i = 0u; good && (i < expect->frames.count); i++) {
+    for (size_t i = 0; good && (i < expect->frames.count); i++) {
         good = is_before_end(scenario, file, expect->frames.items[i].line, expect->frames.items[i].at_ms.to);
     }
-    for (size_t i = 0u; good && (i < expect->never.count); i++) {
+    for (size_t i = 0; good && (i < expect->never.count); i++) {
         good = is_before_end(scenario, file, expect->never.items[i].line, expect->never.items[i].at_ms.from);
     }
     return good;
@@ -283,7 +283,7 @@ static bool read_document(scenario_t *scenario, yaml_document_t *document, const
         !expectations_fit(scenario, file)) {
         return false;
     }
-    scenario->vehicle.gateway = scenario->config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    scenario->vehicle.gateway = scenario->config.topology == AGV_TOPOLOGY_GATEWAY;
     agv_config_ids(&scenario->config, &scenario->ids);
     if (scenario->vehicle.ids.of[0] == AS_CONFIGURED) {
         scenario->vehicle.ids = scenario->ids;

@@ -85,12 +85,12 @@ bool scenario_parse_self_test(const yaml_reader_t *reader, const yaml_node_t *no
 
 static bool read_bounce_time(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     scenario_action_t *action = target;
-    uint32_t ms = 0u;
+    uint32_t ms = 0;
 
     if (action->bounce_count == SCENARIO_BOUNCE_MAX) {
         return yaml_reader_fail(reader, node, "pattern_ms: more than %u durations", SCENARIO_BOUNCE_MAX);
     }
-    if (!scenario_parse_ms(reader, node, "pattern_ms", 1u, BOUNCE_LONGEST_MS, &ms)) {
+    if (!scenario_parse_ms(reader, node, "pattern_ms", 1, BOUNCE_LONGEST_MS, &ms)) {
         return false;
     }
     action->bounce_ms[action->bounce_count] = (uint16_t)ms;
@@ -100,7 +100,7 @@ static bool read_bounce_time(const yaml_reader_t *reader, const yaml_node_t *nod
 
 bool scenario_parse_bounce(const yaml_reader_t *reader, const yaml_node_t *node, scenario_action_t *action) {
     return yaml_reader_list(reader, node, "pattern_ms", read_bounce_time, action) &&
-           ((action->bounce_count > 0u) || yaml_reader_fail(reader, node, "pattern_ms: is empty"));
+           ((action->bounce_count > 0) || yaml_reader_fail(reader, node, "pattern_ms: is empty"));
 }
 
 /** The part of the board that an action needs. */
@@ -124,7 +124,7 @@ bool scenario_parse_board_fits(const yaml_reader_t *reader, const yaml_node_t *n
                                const scenario_step_t *step) {
     const int part = step->of_vehicle ? (int)NO_PART : part_needed(step->supervisor.what);
 
-    return (part == (int)NO_PART) || *part_of(&scenario->board, part) ||
+    return (part == NO_PART) || *part_of(&scenario->board, part) ||
            yaml_reader_fail(reader, node, "'%s' needs a board with '%s'; list it under 'board'", step->word,
                             PARTS[part].word);
 }

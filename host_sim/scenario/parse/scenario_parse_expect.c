@@ -106,7 +106,7 @@ static bool read_failed_part(const yaml_reader_t *reader, const yaml_node_t *nod
     }
     const uint16_t bit = part_bit(text);
     ((scenario_fault_t *)target)->parts |= bit;
-    return (bit != 0u) ||
+    return (bit != 0) ||
            yaml_reader_fail(reader, node,
                             "'%.40s' is not one of flash, ram, processor, watchdog, devices, core, supply", text);
 }
@@ -148,7 +148,7 @@ static bool read_fault(const yaml_reader_t *reader, const yaml_node_t *node, voi
         !scenario_parse_when(reader, node, &when, &fault->raised_ms)) {
         return false;
     }
-    return (fault->parts == 0u) || (fault->fault == AGV_FAULT_SELF_TEST_FAILED) ||
+    return (fault->parts == 0) || (fault->fault == AGV_FAULT_SELF_TEST_FAILED) ||
            yaml_reader_fail(reader, node, "a fault: only SELF_TEST_FAILED has 'parts'");
 }
 
@@ -193,7 +193,7 @@ static bool read_reset(const yaml_reader_t *reader, const yaml_node_t *node, voi
         !scenario_parse_when(reader, node, &when, &reset->at_ms)) {
         return false;
     }
-    return (reset->accepted == (reset->missing == 0u)) ||
+    return (reset->accepted == (reset->missing == 0)) ||
            yaml_reader_fail(reader, node, "a reset: 'why' is needed for a refused reset, and only for that");
 }
 
@@ -261,13 +261,13 @@ static const char *unchecked(const scenario_expect_t *expect) {
     if (!expect->any_states) {
         return NULL;
     }
-    if (expect->outputs.count > 0u) {
+    if (expect->outputs.count > 0) {
         return "safety_output";
     }
-    if (expect->resets.count > 0u) {
+    if (expect->resets.count > 0) {
         return "resets";
     }
-    return (expect->startups.count > 0u) ? "startup" : NULL;
+    return (expect->startups.count > 0) ? "startup" : NULL;
 }
 
 bool scenario_parse_expect(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {

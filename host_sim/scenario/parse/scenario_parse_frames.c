@@ -53,8 +53,8 @@ static void preset_frame(scenario_frame_t *frame, const yaml_node_t *node) {
     frame->any_side = true;
     frame->id = SCENARIO_NO_ID;
     frame->message = AGV_MSG_NONE;
-    frame->at_ms = (scenario_window_t){.from = 0u, .to = ENDLESS};
-    frame->count = (scenario_window_t){.from = 1u, .to = ENDLESS};
+    frame->at_ms = (scenario_window_t){.from = 0, .to = ENDLESS};
+    frame->count = (scenario_window_t){.from = 1, .to = ENDLESS};
     frame->jitter_ms = JITTER_PRESET_MS;
 }
 
@@ -87,7 +87,7 @@ bool scenario_parse_frame(const yaml_reader_t *reader, const yaml_node_t *node, 
         !scenario_parse_when(reader, node, &when, &frame->at_ms)) {
         return false;
     }
-    if (frame->is_first && (frame->at_ms.after.kind == (uint8_t)SCENARIO_FROM_START) &&
+    if (frame->is_first && (frame->at_ms.after.kind == SCENARIO_FROM_START) &&
         (frame->first_since_ms > frame->at_ms.from)) {
         return yaml_reader_fail(reader, node, "first_since_ms is after at_ms");
     }

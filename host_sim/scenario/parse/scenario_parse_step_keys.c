@@ -11,12 +11,12 @@
 /** What the action needs is there, and nothing else. */
 bool scenario_has_what_it_needs(const yaml_reader_t *reader, const scenario_reading_t *reading,
                                 const scenario_action_row_t *row) {
-    for (unsigned i = 0u; i < SCENARIO_PARAMETERS; i++) {
-        if (((row->needs & (1u << i)) != 0u) && (reading->value_of[i] == NULL)) {
+    for (unsigned i = 0; i < SCENARIO_PARAMETERS; i++) {
+        if (((row->needs & (1u << i)) != 0) && (reading->value_of[i] == NULL)) {
             return yaml_reader_fail(reader, reading->node, "'%s' needs '%s'", row->word,
                                     SCENARIO_PARAMETER_ROWS[i].name);
         }
-        if ((((row->needs | row->takes) & (1u << i)) == 0u) && (reading->value_of[i] != NULL)) {
+        if ((((row->needs | row->takes) & (1u << i)) == 0) && (reading->value_of[i] != NULL)) {
             return yaml_reader_fail(reader, reading->value_of[i], "'%s' takes no '%s'", row->word,
                                     SCENARIO_PARAMETER_ROWS[i].name);
         }
@@ -29,9 +29,9 @@ static uint32_t *find_time(const char *name, scenario_reading_t *reading, uint32
     static const char *const names[] = {"at_ms", "wait", "again_every_ms", "again_until_ms"};
     uint32_t *const times[] = {&reading->at_ms, &reading->wait_ms, &reading->again_every_ms, &reading->again_until_ms};
 
-    for (size_t i = 0u; i < COUNT(names); i++) {
+    for (size_t i = 0; i < COUNT(names); i++) {
         if (strcmp(names[i], name) == 0) {
-            *lowest = (times[i] == &reading->again_every_ms) ? 1u : 0u;
+            *lowest = (times[i] == &reading->again_every_ms) ? 1 : 0;
             return times[i];
         }
     }
@@ -43,7 +43,7 @@ static int take_time(const yaml_reader_t *reader, const yaml_node_t *key, const 
                      scenario_reading_t *reading) {
     const char *name = yaml_node_text(key);
     const bool is_after = strcmp(name, "after") == 0;
-    uint32_t lowest = 0u;
+    uint32_t lowest = 0;
     uint32_t *time = find_time(name, reading, &lowest);
 
     if (is_after || (strcmp(name, "name") == 0)) {
@@ -70,7 +70,7 @@ static bool unknown_key(const yaml_reader_t *reader, const yaml_node_t *key, con
     for (const yaml_word_t *actor = SCENARIO_ACTORS; actor->word != NULL; actor++) {
         suggest_offer(&suggestion, actor->word, strlen(actor->word));
     }
-    for (unsigned i = 0u; i < SCENARIO_PARAMETERS; i++) {
+    for (unsigned i = 0; i < SCENARIO_PARAMETERS; i++) {
         suggest_offer(&suggestion, SCENARIO_PARAMETER_ROWS[i].name, strlen(SCENARIO_PARAMETER_ROWS[i].name));
     }
     return yaml_reader_fail(reader, key, "unknown key '%.40s' in a step%s", name,
@@ -98,7 +98,7 @@ static bool take_key(const yaml_reader_t *reader, const yaml_node_t *key, const 
             return true;
         }
     }
-    for (unsigned i = 0u; i < SCENARIO_PARAMETERS; i++) {
+    for (unsigned i = 0; i < SCENARIO_PARAMETERS; i++) {
         if (strcmp(SCENARIO_PARAMETER_ROWS[i].name, name) == 0) {
             if (reading->value_of[i] != NULL) {
                 return yaml_reader_fail(reader, key, "'%s' is given twice in a step", name);
@@ -128,9 +128,9 @@ static bool times_fit(const yaml_reader_t *reader, scenario_reading_t *reading) 
         return yaml_reader_fail(reader, node, "a step: 'again_until_ms' needs 'again_every_ms'");
     }
     if (!is_absolute) {
-        reading->at_ms = (reading->wait_ms != SCENARIO_NO_TIME) ? reading->wait_ms : 0u;
+        reading->at_ms = (reading->wait_ms != SCENARIO_NO_TIME) ? reading->wait_ms : 0;
     }
-    reading->again_every_ms = (reading->again_every_ms != SCENARIO_NO_TIME) ? reading->again_every_ms : 0u;
+    reading->again_every_ms = (reading->again_every_ms != SCENARIO_NO_TIME) ? reading->again_every_ms : 0;
     return true;
 }
 

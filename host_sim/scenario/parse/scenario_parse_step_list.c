@@ -5,10 +5,10 @@
 
 /** Check that there is room for all repeated steps. */
 static bool again_fits(const yaml_reader_t *reader, const yaml_node_t *node, const scenario_t *scenario) {
-    size_t count = 0u;
+    size_t count = 0;
 
-    for (size_t i = 0u; i < scenario->step_count; i++) {
-        count += (scenario->steps[i].again_every_ms != 0u) ? 1u : 0u;
+    for (size_t i = 0; i < scenario->step_count; i++) {
+        count += (scenario->steps[i].again_every_ms != 0) ? 1 : 0;
     }
     return (count <= SCENARIO_AGAIN_MAX) ||
            yaml_reader_fail(reader, node, "more than %u steps with again_every_ms", SCENARIO_AGAIN_MAX);
@@ -28,7 +28,7 @@ static bool take_name(const yaml_reader_t *reader, const yaml_node_t *node, cons
         return false;
     }
     if (strlen(text) >= sizeof step->name) {
-        return yaml_reader_fail(reader, name, "name: longer than %u bytes", SCENARIO_NAME_MAX - 1u);
+        return yaml_reader_fail(reader, name, "name: longer than %u bytes", SCENARIO_NAME_MAX - 1);
     }
     if (scenario_anchor_read(text, &anchor)) {
         return yaml_reader_fail(reader, name, "name: '%s' is the name of an event", text);
@@ -46,7 +46,7 @@ static bool take_name(const yaml_reader_t *reader, const yaml_node_t *node, cons
 static bool take_after(const yaml_reader_t *reader, const yaml_node_t *node, scenario_t *scenario,
                        scenario_step_t *step) {
     const yaml_node_t *after = yaml_reader_value(reader, node, "after");
-    uint32_t offset_ms = 0u;
+    uint32_t offset_ms = 0;
 
     if (after == NULL) {
         return true;
@@ -59,7 +59,7 @@ static bool take_after(const yaml_reader_t *reader, const yaml_node_t *node, sce
         return yaml_reader_fail(reader, node, "a step: %u ms is above the longest scenario, %u ms",
                                 (unsigned)step->at_ms, (unsigned)SCENARIO_DURATION_MAX_MS);
     }
-    scenario->waiting_count += (step->after.kind != (uint8_t)SCENARIO_FROM_START) ? 1u : 0u;
+    scenario->waiting_count += (step->after.kind != SCENARIO_FROM_START) ? 1 : 0;
     return true;
 }
 

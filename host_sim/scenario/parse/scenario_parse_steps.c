@@ -15,7 +15,7 @@
 #define BITS_OF_BYTE 8u
 
 static const yaml_node_t *given(const scenario_reading_t *reading, uint32_t parameter) {
-    for (unsigned i = 0u; i < SCENARIO_PARAMETERS; i++) {
+    for (unsigned i = 0; i < SCENARIO_PARAMETERS; i++) {
         if ((1u << i) == parameter) {
             return reading->value_of[i];
         }
@@ -33,7 +33,7 @@ static bool take_message(const yaml_reader_t *reader, const scenario_reading_t *
     if (!scenario_parse_message(reader, message, &step->vehicle.message)) {
         return false;
     }
-    if (((row->what == (int)VEHICLE_DO_IGNORE) && row->of_vehicle)) {
+    if (((row->what == VEHICLE_DO_IGNORE) && row->of_vehicle)) {
         return ((int)vehicle_receiver_of(step->vehicle.message) == (int)reading->actor) ||
                yaml_reader_fail(reader, message, "message: %.40s is not a command that this node obeys",
                                 yaml_node_text(message));
@@ -61,7 +61,7 @@ static bool take_numbers(const yaml_reader_t *reader, const scenario_reading_t *
     static const uint32_t others[] = {P_BY_MS, P_EVERY_MS, P_OFF_MS, P_FOR_MS, P_BIT};
     int64_t number = 0;
 
-    for (size_t i = 0u; i < COUNT(counts); i++) {
+    for (size_t i = 0; i < COUNT(counts); i++) {
         if (given(reading, counts[i]) != NULL) {
             if (!read_number(reader, reading, counts[i], &number)) {
                 return false;
@@ -69,7 +69,7 @@ static bool take_numbers(const yaml_reader_t *reader, const scenario_reading_t *
             step->vehicle.count = (uint16_t)number;
         }
     }
-    for (size_t i = 0u; i < COUNT(others); i++) {
+    for (size_t i = 0; i < COUNT(others); i++) {
         if (given(reading, others[i]) != NULL) {
             if (!read_number(reader, reading, others[i], &number)) {
                 return false;
@@ -162,7 +162,7 @@ static bool unknown_field(const yaml_reader_t *reader, const yaml_node_t *node, 
                           const char *name) {
     char meant[SUGGEST_SIZE];
     suggestion_t suggestion = suggest_begin(name, strlen(name));
-    for (size_t i = 0u; scenario_field(i) != NULL; i++) {
+    for (size_t i = 0; scenario_field(i) != NULL; i++) {
         if (scenario_field(i)->actor == actor) {
             suggest_offer(&suggestion, scenario_field(i)->name, strlen(scenario_field(i)->name));
         }
@@ -175,7 +175,7 @@ static bool unknown_field(const yaml_reader_t *reader, const yaml_node_t *node, 
 static bool take_field(const yaml_reader_t *reader, const scenario_reading_t *reading, vehicle_action_t *action) {
     const yaml_node_t *node = given(reading, P_FIELD);
     const char *name = yaml_reader_text(reader, node, "field");
-    uint32_t value = 0u;
+    uint32_t value = 0;
 
     if (name == NULL) {
         return false;
@@ -190,7 +190,7 @@ static bool take_field(const yaml_reader_t *reader, const scenario_reading_t *re
     }
     action->message = row->message;
     memset(action->keep, UINT8_MAX, sizeof action->keep);
-    for (unsigned i = 0u; i < row->size; i++) {
+    for (unsigned i = 0; i < row->size; i++) {
         action->keep[row->byte + i] = (uint8_t)~row->mask;
         action->value[row->byte + i] = (uint8_t)((value >> (BITS_OF_BYTE * i)) << row->shift);
     }
@@ -201,12 +201,12 @@ static bool take_field(const yaml_reader_t *reader, const scenario_reading_t *re
 static bool take_patch_bytes(const yaml_reader_t *reader, const scenario_reading_t *reading, vehicle_action_t *action) {
     const yaml_node_t *node = given(reading, P_BYTES);
     uint8_t mask[AGV_DLC];
-    uint8_t length = 0u;
+    uint8_t length = 0;
 
     if (!yaml_reader_bytes(reader, node, "bytes", action->value, mask, &length)) {
         return false;
     }
-    for (unsigned i = 0u; i < AGV_DLC; i++) {
+    for (unsigned i = 0; i < AGV_DLC; i++) {
         action->keep[i] = (uint8_t)~mask[i];
     }
     return (length == AGV_DLC) ||
@@ -264,7 +264,7 @@ static bool take_side(const yaml_reader_t *reader, const scenario_reading_t *rea
     if ((node != NULL) && !yaml_reader_word(reader, node, "side", SCENARIO_SIDES, &word)) {
         return false;
     }
-    if ((word == (int)HAL_CAN_AI) && (config->topology != (uint16_t)AGV_TOPOLOGY_GATEWAY)) {
+    if ((word == HAL_CAN_AI) && (config->topology != AGV_TOPOLOGY_GATEWAY)) {
         return yaml_reader_fail(reader, node, "side: only topology: gateway has an AI side");
     }
     *side = (hal_can_side_t)word;
@@ -278,7 +278,7 @@ static bool take_times(const yaml_reader_t *reader, const scenario_reading_t *re
     if ((given(reading, P_EVERY_MS) != NULL) && (times == NULL)) {
         action->count = VEHICLE_FOREVER;
     }
-    return (times == NULL) || (action->count > 0u) || yaml_reader_fail(reader, times, "times: at least 1 for 'send'");
+    return (times == NULL) || (action->count > 0) || yaml_reader_fail(reader, times, "times: at least 1 for 'send'");
 }
 
 static bool take_for_vehicle(const yaml_reader_t *reader, const scenario_reading_t *reading,
@@ -288,7 +288,7 @@ static bool take_for_vehicle(const yaml_reader_t *reader, const scenario_reading
     action->what = (vehicle_do_t)row->what;
     action->on = row->on;
     action->node = (vehicle_node_t)reading->actor;
-    action->count = ((row->takes & P_FRAMES) != 0u) ? VEHICLE_FOREVER : 0u;
+    action->count = ((row->takes & P_FRAMES) != 0) ? VEHICLE_FOREVER : 0;
     if (!take_numbers(reader, reading, step) || !take_every(reader, reading, action) ||
         !take_driving(reader, reading, action)) {
         return false;
@@ -304,8 +304,8 @@ static bool take_for_vehicle(const yaml_reader_t *reader, const scenario_reading
     case VEHICLE_DO_GARBAGE:
         return take_garbage(reader, reading, action);
     case VEHICLE_DO_PATCH:
-        return ((row->needs & P_FIELD) != 0u) ? take_field(reader, reading, action)
-                                              : take_patch_bytes(reader, reading, action);
+        return ((row->needs & P_FIELD) != 0) ? take_field(reader, reading, action)
+                                             : take_patch_bytes(reader, reading, action);
     case VEHICLE_DO_SEND:
         return take_times(reader, reading, action) && take_side(reader, reading, config, &action->side) &&
                take_frame(reader, reading, config, step, &action->frame);
@@ -336,7 +336,7 @@ static bool take_for_supervisor(const yaml_reader_t *reader, const scenario_read
     action->what = (scenario_do_t)row->what;
     action->on = row->on;
     action->ms = (action->what == SCENARIO_CORRUPT_FRAMES) ? step->vehicle.count : step->vehicle.ms;
-    if ((row->needs & P_CAUSE) != 0u) {
+    if ((row->needs & P_CAUSE) != 0) {
         if (!yaml_reader_word(reader, given(reading, P_CAUSE), "cause", SCENARIO_CAUSES, &cause)) {
             return false;
         }
@@ -348,7 +348,7 @@ static bool take_for_supervisor(const yaml_reader_t *reader, const scenario_read
     case SCENARIO_BUTTON_BOUNCES:
         return scenario_parse_bounce(reader, given(reading, P_PATTERN), action);
     case SCENARIO_CLOCK:
-        return (row->needs == 0u) || take_permille(reader, reading, action);
+        return (row->needs == 0) || take_permille(reader, reading, action);
     case SCENARIO_TEST_FAILS:
         return scenario_parse_tested_part(reader, given(reading, P_PART), &action->parts);
     default:
@@ -359,7 +359,7 @@ static bool take_for_supervisor(const yaml_reader_t *reader, const scenario_read
 static bool unknown_action(const yaml_reader_t *reader, const scenario_reading_t *reading, const char *word) {
     char meant[SUGGEST_SIZE];
     suggestion_t suggestion = suggest_begin(word, strlen(word));
-    for (size_t i = 0u; scenario_action(i) != NULL; i++) {
+    for (size_t i = 0; scenario_action(i) != NULL; i++) {
         const scenario_action_row_t *row = scenario_action(i);
         if (scenario_action_is_of(row, reading->actor)) {
             suggest_offer(&suggestion, row->word, strlen(row->word));

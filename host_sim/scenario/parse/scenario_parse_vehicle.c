@@ -55,7 +55,7 @@ static bool read_vehicle_id_set(const yaml_reader_t *reader, const yaml_node_t *
     if (!yaml_reader_word(reader, node, "id_set", SCENARIO_ID_SETS, &value)) {
         return false;
     }
-    for (uint32_t m = 0u; m < (uint32_t)AGV_MSG_COUNT; m++) {
+    for (uint32_t m = 0; m < AGV_MSG_COUNT; m++) {
         ((vehicle_config_t *)target)->ids.of[m] = agv_message_id(m, (uint32_t)value);
     }
     return true;

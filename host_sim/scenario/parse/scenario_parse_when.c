@@ -7,7 +7,7 @@ const yaml_shape_t SCENARIO_TEXT_SHAPE = {.kind = YAML_KIND_TEXT};
 
 /** The step with a name; NULL: there is none. */
 static const scenario_step_t *find_step(const scenario_t *scenario, const char *name) {
-    for (size_t i = 0u; i < scenario->step_count; i++) {
+    for (size_t i = 0; i < scenario->step_count; i++) {
         if (strcmp(scenario->steps[i].name, name) == 0) {
             return &scenario->steps[i];
         }
@@ -22,7 +22,7 @@ bool scenario_parse_after(const yaml_reader_t *reader, const yaml_node_t *node, 
     if (text == NULL) {
         return false;
     }
-    *offset_ms = 0u;
+    *offset_ms = 0;
     if (scenario_anchor_read(text, anchor)) {
         return true;
     }
@@ -42,7 +42,7 @@ bool scenario_parse_after(const yaml_reader_t *reader, const yaml_node_t *node, 
 static bool read_relative(const yaml_reader_t *reader, const yaml_node_t *node, const scenario_when_t *when,
                           scenario_window_t *window) {
     const yaml_node_t *within = yaml_reader_value(reader, node, "within");
-    uint32_t offset_ms = 0u;
+    uint32_t offset_ms = 0;
 
     if (within == NULL) {
         return yaml_reader_fail(reader, node, "%s: 'within' is missing", when->what);
@@ -52,7 +52,7 @@ static bool read_relative(const yaml_reader_t *reader, const yaml_node_t *node, 
         return false;
     }
     if (within->type == YAML_SCALAR_NODE) {
-        window->from = 0u;
+        window->from = 0;
     }
     window->from += offset_ms;
     window->to += offset_ms;

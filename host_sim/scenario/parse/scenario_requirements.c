@@ -11,7 +11,7 @@ const char *scenario_requirement(size_t index) {
 }
 
 bool scenario_is_requirement(const char *id) {
-    for (size_t i = 0u; i < sizeof ids / sizeof ids[0]; i++) {
+    for (size_t i = 0; i < sizeof ids / sizeof ids[0]; i++) {
         if (strcmp(ids[i], id) == 0) {
             return true;
         }

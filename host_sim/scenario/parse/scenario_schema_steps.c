@@ -25,8 +25,8 @@ static const yaml_rule_t STEP_RULES[] = {{YAML_RULE_ONE_OF, "at_ms", "after"},
 /** The words of an actor. */
 static json_t *words_of(scenario_actor_t actor) {
     json_t *list = json_array();
-    const scenario_action_row_t *row = scenario_action(0u);
-    for (size_t i = 1u; row != NULL; i++) {
+    const scenario_action_row_t *row = scenario_action(0);
+    for (size_t i = 1; row != NULL; i++) {
         if (scenario_action_is_of(row, actor)) {
             (void)json_array_append_new(list, json_string(row->word));
         }
@@ -37,7 +37,7 @@ static json_t *words_of(scenario_actor_t actor) {
 
 /** The messages that an action of a node may name: those that it sends, or the commands that it obeys. */
 static json_t *messages_of(const scenario_action_row_t *row, scenario_actor_t actor) {
-    const bool obeys = row->of_vehicle && (row->what == (int)VEHICLE_DO_IGNORE);
+    const bool obeys = row->of_vehicle && (row->what == VEHICLE_DO_IGNORE);
     json_t *list = json_array();
     for (int m = 0; m < AGV_MSG_COUNT; m++) {
         const agv_message_t message = (agv_message_t)m;
@@ -62,8 +62,8 @@ static json_t *with_key(const char *key, json_t *schema) {
 /** The fields of a node, and how large the value of each may be. */
 static void add_fields(json_t *then, json_t *properties, scenario_actor_t actor) {
     json_t *list = json_array();
-    const scenario_field_row_t *row = scenario_field(0u);
-    for (size_t i = 1u; row != NULL; i++) {
+    const scenario_field_row_t *row = scenario_field(0);
+    for (size_t i = 1; row != NULL; i++) {
         if (row->actor == actor) {
             const yaml_shape_t value = {.kind = YAML_KIND_HEX, .highest = scenario_field_highest(row)};
             (void)json_array_append_new(list, json_string(row->name));
@@ -103,19 +103,19 @@ static void add_parameters(json_t *then, const scenario_action_row_t *row, scena
     const yaml_shape_t all_bytes = {
         .kind = YAML_KIND_BYTES, .lowest = AGV_DLC, .highest = AGV_DLC, .may_be_open = true};
 
-    if ((takes & P_MESSAGE) != 0u) {
+    if ((takes & P_MESSAGE) != 0) {
         (void)json_object_set_new(properties, "message", messages_of(row, actor));
     }
-    if ((takes & P_FIELD) != 0u) {
+    if ((takes & P_FIELD) != 0) {
         add_fields(then, properties, actor);
     }
-    if ((takes & P_ID) != 0u) {
+    if ((takes & P_ID) != 0) {
         add_raw_frame(then, properties, row->of_vehicle);
-    } else if ((takes & P_BYTES) != 0u) {
+    } else if ((takes & P_BYTES) != 0) {
         (void)json_object_set_new(properties, "bytes", yaml_schema(&all_bytes));
-    } else if ((takes & P_KIND) != 0u) {
+    } else if ((takes & P_KIND) != 0) {
         (void)json_object_set_new(properties, "kind", yaml_schema(&garbage));
-    } else if (row->of_vehicle && (row->what == (int)VEHICLE_DO_DELAY)) {
+    } else if (row->of_vehicle && (row->what == VEHICLE_DO_DELAY)) {
         yaml_key_t by = *scenario_parameter(P_BY_MS);
         by.highest = VEHICLE_DELAY_MAX_MS;
         (void)json_object_set_new(properties, by.name, yaml_schema_of_key(&by));
@@ -129,15 +129,15 @@ static void add_parameters(json_t *then, const scenario_action_row_t *row, scena
 static json_t *condition_of(const scenario_action_row_t *row, const yaml_word_t *actor) {
     json_t *names = json_pack("[s]", actor->word);
     json_t *required = json_array();
-    for (size_t i = 0u; i < COUNT(STEP_KEYS); i++) {
+    for (size_t i = 0; i < COUNT(STEP_KEYS); i++) {
         (void)json_array_append_new(names, json_string(STEP_KEYS[i].name));
     }
-    for (unsigned i = 0u; i < SCENARIO_PARAMETERS; i++) {
+    for (unsigned i = 0; i < SCENARIO_PARAMETERS; i++) {
         json_t *name = json_string(SCENARIO_PARAMETER_ROWS[i].name);
-        if (((row->needs >> i) & 1u) != 0u) {
+        if (((row->needs >> i) & 1) != 0) {
             (void)json_array_append(required, name);
         }
-        if ((((row->needs | row->takes) >> i) & 1u) != 0u) {
+        if ((((row->needs | row->takes) >> i) & 1) != 0) {
             (void)json_array_append(names, name);
         }
         json_decref(name);
@@ -148,8 +148,8 @@ static json_t *condition_of(const scenario_action_row_t *row, const yaml_word_t 
 }
 
 static void add_actions(json_t *schema, const yaml_word_t *actor) {
-    const scenario_action_row_t *row = scenario_action(0u);
-    for (size_t i = 1u; row != NULL; i++) {
+    const scenario_action_row_t *row = scenario_action(0);
+    for (size_t i = 1; row != NULL; i++) {
         if (scenario_action_is_of(row, (scenario_actor_t)actor->value)) {
             yaml_schema_also(schema, condition_of(row, actor));
         }
@@ -160,10 +160,10 @@ static void add_actions(json_t *schema, const yaml_word_t *actor) {
 json_t *scenario_schema_step(void) {
     json_t *properties = json_object();
     json_t *actors = json_array();
-    for (size_t i = 0u; i < COUNT(STEP_KEYS); i++) {
+    for (size_t i = 0; i < COUNT(STEP_KEYS); i++) {
         (void)json_object_set_new(properties, STEP_KEYS[i].name, yaml_schema_of_key(&STEP_KEYS[i]));
     }
-    for (size_t i = 0u; i < SCENARIO_PARAMETERS; i++) {
+    for (size_t i = 0; i < SCENARIO_PARAMETERS; i++) {
         (void)json_object_set_new(properties, SCENARIO_PARAMETER_ROWS[i].name,
                                   yaml_schema_of_key(&SCENARIO_PARAMETER_ROWS[i]));
     }
@@ -173,7 +173,7 @@ json_t *scenario_schema_step(void) {
     }
     json_t *schema = json_pack("{s:s, s:o, s:o, s:b}", "type", "object", "properties", properties, "oneOf", actors,
                                "additionalProperties", 0);
-    for (size_t i = 0u; i < COUNT(STEP_RULES); i++) {
+    for (size_t i = 0; i < COUNT(STEP_RULES); i++) {
         yaml_schema_also(schema, yaml_schema_of_rule(&STEP_RULES[i]));
     }
     for (const yaml_word_t *actor = SCENARIO_ACTORS; actor->word != NULL; actor++) {

@@ -17,7 +17,7 @@ static void check_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from,
 /** Hazards are evaluated if the file asks for it. */
 static void watch_hazards(scenario_run_t *run) {
     hazard_init(&run->hazard, &run->scenario, &run->testbed);
-    if (run->scenario.expect.no_hazards != 0u) {
+    if (run->scenario.expect.no_hazards != 0) {
         const scenario_watch_t watch = hazard_watch(&run->hazard);
         scenario_testbed_watch(&run->testbed, &watch);
     }
@@ -26,7 +26,7 @@ static void watch_hazards(scenario_run_t *run) {
 static void check_hazards(scenario_run_t *run) {
     const hazard_t *hazard = &run->hazard;
 
-    if ((run->scenario.expect.no_hazards != 0u) && (hazard->kind != HAZARD_NONE)) {
+    if ((run->scenario.expect.no_hazards != 0) && (hazard->kind != HAZARD_NONE)) {
         scenario_check_fail(&run->check, run->scenario.expect.no_hazards,
                             "no hazard is expected, seen: %s (%s) at %u ms", hazard_info(hazard->kind)->name,
                             hazard->cause, (unsigned)hazard->at_ms);
@@ -56,7 +56,7 @@ static bool after_tick(void *ctx, uint64_t t_ms) {
         scenario_testbed_vehicle(&run->testbed, &view);
         scenario_check_vehicle(&run->check, (uint32_t)t_ms, &view);
     }
-    run->was_interrupted = ((t_ms % LOOK_FOR_SIGNALS_EVERY_MS) == 0u) && interrupt_pending();
+    run->was_interrupted = ((t_ms % LOOK_FOR_SIGNALS_EVERY_MS) == 0) && interrupt_pending();
     return !run->was_interrupted;
 }
 
@@ -66,17 +66,17 @@ bool scenario_run_start(scenario_run_t *run, const scenario_watch_t watches[], s
 
     run->was_interrupted = false;
     run->on_step = on_step;
-    run->step_ctx = (count > 0u) ? watches[0].ctx : NULL;
+    run->step_ctx = (count > 0) ? watches[0].ctx : NULL;
     memset(run->was_done, 0, sizeof run->was_done);
     scenario_player_init(&run->player, &run->scenario, scenario_testbed_events(&run->testbed));
     scenario_check_init(&run->check, &run->scenario);
     if (!scenario_testbed_init(&run->testbed, &run->scenario)) {
-        scenario_check_fail(&run->check, 0u, "the testbed could not be built");
+        scenario_check_fail(&run->check, 0, "the testbed could not be built");
         return false;
     }
     scenario_testbed_watch(&run->testbed, &checked);
     watch_hazards(run);
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         scenario_testbed_watch(&run->testbed, &watches[i]);
     }
     scenario_testbed_start(&run->testbed);
@@ -98,7 +98,7 @@ void scenario_run_do(scenario_run_t *run, uint64_t t_ms, const scenario_step_t *
 bool scenario_run_end(scenario_run_t *run) {
     check_hazards(run);
     scenario_check_finish(&run->check, agv_supervisor_counters(&scenario_testbed_session(&run->testbed)->supervisor));
-    return !run->was_interrupted && (run->check.failure_count == 0u);
+    return !run->was_interrupted && (run->check.failure_count == 0);
 }
 
 bool scenario_run(scenario_run_t *run, const scenario_watch_t watches[], size_t count, scenario_step_fn *on_step) {
@@ -106,7 +106,7 @@ bool scenario_run(scenario_run_t *run, const scenario_watch_t watches[], size_t 
         return false;
     }
     bool goes_on = true;
-    for (uint64_t t_ms = 0u; goes_on && (t_ms <= run->scenario.duration_ms); t_ms++) {
+    for (uint64_t t_ms = 0; goes_on && (t_ms <= run->scenario.duration_ms); t_ms++) {
         goes_on = scenario_run_ms(run, t_ms);
     }
     return scenario_run_end(run);

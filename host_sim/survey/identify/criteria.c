@@ -34,7 +34,7 @@ const evidence_id_t *criteria_evidence(const inquiry_t *inquiry, const traffic_i
 /** Whether the byte at which a message has its alive counter counts. */
 static bool has_counter(const evidence_id_t *heard, uint32_t message) {
     const uint8_t at = message_counter_at(message);
-    const counter_use_t *use = &heard->counters[(at == 0u) ? 0 : 1];
+    const counter_use_t *use = &heard->counters[(at == 0) ? 0 : 1];
     return (at == MESSAGE_NO_COUNTER) || ((use->steps + use->other_steps) * REPEATS_PER_STEP >= use->frames);
 }
 
@@ -46,7 +46,7 @@ static bool has_side(const inquiry_t *inquiry, hal_can_side_t side, uint32_t mes
 }
 
 static bool is_taken(const inquiry_t *inquiry, const evidence_id_t *heard) {
-    for (size_t i = 0u; i < (size_t)AGV_MSG_COUNT; i++) {
+    for (size_t i = 0; i < AGV_MSG_COUNT; i++) {
         if (inquiry->of[i] == heard) {
             return true;
         }
@@ -56,8 +56,8 @@ static bool is_taken(const inquiry_t *inquiry, const evidence_id_t *heard) {
 
 bool criteria_allow(const inquiry_t *inquiry, const traffic_id_t *entry, uint32_t message) {
     const evidence_id_t *heard = criteria_evidence(inquiry, entry);
-    return (heard != NULL) && (entry->message != SIGNALS_STATUS_FRAME) && (heard->frames >= (uint64_t)FRAMES_MIN) &&
-           (((heard->fits >> message) & 1u) != 0u) && has_side(inquiry, entry->side, message) &&
+    return (heard != NULL) && (entry->message != SIGNALS_STATUS_FRAME) && (heard->frames >= FRAMES_MIN) &&
+           (((heard->fits >> message) & 1) != 0) && has_side(inquiry, entry->side, message) &&
            has_counter(heard, message) && !is_taken(inquiry, heard);
 }
 
@@ -68,7 +68,7 @@ static verdict_t judge_cycle(const suspect_t *suspect, criterion_t *criterion) {
     const uint64_t median_us = gaps_quantile_us(&suspect->entry->gaps, MEDIAN);
     const uint64_t percent = (median_us * PERCENT) / ((uint64_t)cycle_ms * US_PER_MS);
     const double ms = ms_of_us(median_us);
-    if ((percent >= (uint64_t)CYCLE_LOWEST_PCT) && (percent <= (uint64_t)CYCLE_HIGHEST_PCT)) {
+    if ((percent >= CYCLE_LOWEST_PCT) && (percent <= CYCLE_HIGHEST_PCT)) {
         return say(criterion, VERDICT_FOR, "comes every %.1f ms, as in the protocol", ms);
     }
     return say(criterion, VERDICT_AGAINST, "comes every %.1f ms, not every %" PRIu32 " ms", ms, cycle_ms);
@@ -77,11 +77,11 @@ static verdict_t judge_cycle(const suspect_t *suspect, criterion_t *criterion) {
 /** Whether a bit beside the alive counter was ever set: a payload of zeros says nothing. */
 static verdict_t judge_content(const suspect_t *suspect, criterion_t *criterion) {
     const uint8_t counter_at = message_counter_at(suspect->message);
-    uint32_t bits = 0u;
-    for (uint32_t i = 0u; i < AGV_DLC; i++) {
-        bits |= (i == counter_at) ? 0u : suspect->entry->bits_ever[i];
+    uint32_t bits = 0;
+    for (uint32_t i = 0; i < AGV_DLC; i++) {
+        bits |= (i == counter_at) ? 0 : suspect->entry->bits_ever[i];
     }
-    if (bits != 0u) {
+    if (bits != 0) {
         return VERDICT_NONE;
     }
     return say(criterion, VERDICT_REFUSES,
@@ -90,13 +90,13 @@ static verdict_t judge_content(const suspect_t *suspect, criterion_t *criterion)
 
 static verdict_t judge_other_set(const suspect_t *suspect, criterion_t *criterion) {
     const uint32_t other =
-        (suspect->inquiry->config->id_set == (uint16_t)AGV_ID_SET_HEADING) ? AGV_ID_SET_TABLE : AGV_ID_SET_HEADING;
+        (suspect->inquiry->config->id_set == AGV_ID_SET_HEADING) ? AGV_ID_SET_TABLE : AGV_ID_SET_HEADING;
     const uint16_t id = agv_message_id(suspect->message, other);
     if ((id == agv_message_id(suspect->message, suspect->inquiry->config->id_set)) || (suspect->entry->id != id)) {
         return VERDICT_NONE;
     }
     return say(criterion, VERDICT_DECIDES, "is its identifier in the ID set %s",
-               (other == (uint32_t)AGV_ID_SET_TABLE) ? "table" : "heading");
+               (other == AGV_ID_SET_TABLE) ? "table" : "heading");
 }
 
 /* -- criteria of two identifiers -- */
@@ -124,7 +124,7 @@ static const pair_t pairs[] = {
 };
 
 static const pair_t *pair_of(uint32_t message) {
-    for (size_t i = 0u; i < sizeof pairs / sizeof pairs[0]; i++) {
+    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
         if ((pairs[i].command == message) || (pairs[i].status == message)) {
             return &pairs[i];
         }
@@ -144,10 +144,10 @@ static bool compare_begin(const inquiry_t *inquiry, const pair_t *pair, const ev
     const int32_t ranges[2] = {compare->first->highest - compare->first->lowest,
                                compare->second->highest - compare->second->lowest};
     const int32_t range = (ranges[0] < ranges[1]) ? ranges[0] : ranges[1];
-    if (pair->command == (uint32_t)AGV_MSG_THROTTLE_COMMAND) {
+    if (pair->command == AGV_MSG_THROTTLE_COMMAND) {
         compare->tolerance =
             (range / TOLERANCE_PARTS < THROTTLE_TOLERANCE) ? range / TOLERANCE_PARTS : THROTTLE_TOLERANCE;
-    } else if (pair->command == (uint32_t)AGV_MSG_STEERING_COMMAND) {
+    } else if (pair->command == AGV_MSG_STEERING_COMMAND) {
         compare->tolerance = (range / TOLERANCE_PARTS > ANGLE_TOLERANCE) ? range / TOLERANCE_PARTS : ANGLE_TOLERANCE;
     } else {
         compare->tolerance = 0;
@@ -158,7 +158,7 @@ static bool compare_begin(const inquiry_t *inquiry, const pair_t *pair, const ev
 /** Both angles are at the centre all the time. */
 static bool are_at_rest(const compare_t *compare) {
     const track_t *const tracks[2] = {compare->first, compare->second};
-    for (size_t i = 0u; i < 2u; i++) {
+    for (size_t i = 0; i < 2; i++) {
         if ((tracks[i]->lowest < AGV_ANGLE_RAW_CENTRE - ANGLE_REST) ||
             (tracks[i]->highest > AGV_ANGLE_RAW_CENTRE + ANGLE_REST)) {
             return false;
@@ -174,7 +174,7 @@ static bool varies(const track_t *track) {
 /** Whether two identifiers show the same gear or throttle, and took it together. */
 static bool are_in_step(const compare_t *compare, const agreement_t *found) {
     return varies(compare->first) && varies(compare->second) && (found->equal >= SAME) &&
-           (compare_order(compare).together > 0u);
+           (compare_order(compare).together > 0);
 }
 
 /** Whether two numbers move together, and are about the same. */
@@ -191,13 +191,13 @@ static verdict_t agreement(const inquiry_t *inquiry, const pair_t *pair, const e
         return VERDICT_NONE;
     }
     const agreement_t found = compare_values(&compare);
-    const bool is_gear = pair->command == (uint32_t)AGV_MSG_GEAR_COMMAND;
-    const bool is_angle = pair->command == (uint32_t)AGV_MSG_STEERING_COMMAND;
+    const bool is_gear = pair->command == AGV_MSG_GEAR_COMMAND;
+    const bool is_angle = pair->command == AGV_MSG_STEERING_COMMAND;
     if ((!is_gear && follow(&compare, &found)) || (!is_angle && are_in_step(&compare, &found)) ||
-        (is_angle && (found.samples > 0u) && are_at_rest(&compare))) {
+        (is_angle && (found.samples > 0) && are_at_rest(&compare))) {
         return VERDICT_DECIDES;
     }
-    const bool differ = (compare.mode != NULL) && (found.samples > 0u) && (found.equal < DIFFERENT);
+    const bool differ = (compare.mode != NULL) && (found.samples > 0) && (found.equal < DIFFERENT);
     return differ ? VERDICT_REFUSES : VERDICT_NONE;
 }
 
@@ -213,7 +213,7 @@ static const evidence_id_t *find_partner(const suspect_t *suspect, const pair_t 
         return suspect->inquiry->of[counterpart];
     }
     const evidence_id_t *partner = NULL;
-    for (size_t i = 0u; traffic_at(suspect->inquiry->traffic, i) != NULL; i++) {
+    for (size_t i = 0; traffic_at(suspect->inquiry->traffic, i) != NULL; i++) {
         const traffic_id_t *entry = traffic_at(suspect->inquiry->traffic, i);
         const evidence_id_t *other = criteria_evidence(suspect->inquiry, entry);
         if ((other == suspect->heard) || !criteria_allow(suspect->inquiry, entry, counterpart) ||
@@ -248,18 +248,18 @@ static verdict_t judge_order(const suspect_t *suspect, criterion_t *criterion) {
     const order_t order = compare_order(&compare);
     const uint32_t right = is_command ? order.first_leads : order.second_leads;
     const uint32_t wrong = is_command ? order.second_leads : order.first_leads;
-    const bool is_clear = (right == 0u) || (wrong == 0u);
-    const uint32_t needed = are_cycles_in_order(suspect, partner) == (right > 0u) ? 1u : (uint32_t)LEADS_ALONE;
+    const bool is_clear = (right == 0) || (wrong == 0);
+    const uint32_t needed = are_cycles_in_order(suspect, partner) == (right > 0) ? 1 : (uint32_t)LEADS_ALONE;
     if (!is_clear || (right + wrong < needed)) {
         return VERDICT_NONE;
     }
-    return say(criterion, (right > 0u) ? VERDICT_FOR : VERDICT_REFUSES, "changes %s %03Xh does",
-               ((right > 0u) == is_command) ? "before" : "after", partner->id);
+    return say(criterion, (right > 0) ? VERDICT_FOR : VERDICT_REFUSES, "changes %s %03Xh does",
+               ((right > 0) == is_command) ? "before" : "after", partner->id);
 }
 
 /** The message that says whether the AI computer is silent. */
 static const evidence_id_t *ai_of(const inquiry_t *inquiry, uint32_t *message) {
-    for (*message = 0u; *message < AGV_COMMAND_COUNT; (*message)++) {
+    for (*message = 0; *message < AGV_COMMAND_COUNT; (*message)++) {
         if (inquiry->of[*message] != NULL) {
             return inquiry->of[*message];
         }
@@ -270,18 +270,18 @@ static const evidence_id_t *ai_of(const inquiry_t *inquiry, uint32_t *message) {
 /** All commands are silent together, and nothing else is. */
 static verdict_t judge_sender(const suspect_t *suspect, criterion_t *criterion) {
     const bool is_command = suspect->message < AGV_COMMAND_COUNT;
-    uint32_t message = 0u;
+    uint32_t message = 0;
     const evidence_id_t *ai = ai_of(suspect->inquiry, &message);
     const evidence_id_t *vcu = suspect->inquiry->of[AGV_MSG_VEHICLE_STATUS];
     if ((ai == NULL) || (vcu == NULL)) {
         return VERDICT_NONE;
     }
     const silences_t silences = compare_silences(suspect->heard, ai, vcu);
-    if ((silences.shared > 0u) && (silences.opposed == 0u)) {
+    if ((silences.shared > 0) && (silences.opposed == 0)) {
         return say(criterion, is_command ? VERDICT_FOR : VERDICT_REFUSES, "is silent when %03Xh %s is", ai->id,
                    signals_message_name(message));
     }
-    if ((silences.opposed > 0u) && (silences.shared == 0u)) {
+    if ((silences.opposed > 0) && (silences.shared == 0)) {
         return say(criterion, is_command ? VERDICT_REFUSES : VERDICT_FOR, "comes while %03Xh %s is silent", ai->id,
                    signals_message_name(message));
     }
@@ -296,7 +296,7 @@ static bool may_be_swapped(const suspect_t *suspect, const pair_t *pair) {
     const uint32_t counterpart = (pair->command == suspect->message) ? pair->status : pair->command;
     criterion_t unused;
     return (pair->fields[0] == pair->fields[1]) && suspect->inquiry->is_foreign &&
-           (((suspect->inquiry->heard >> counterpart) & 1u) != 0u) && (judge_order(suspect, &unused) != VERDICT_FOR) &&
+           (((suspect->inquiry->heard >> counterpart) & 1) != 0) && (judge_order(suspect, &unused) != VERDICT_FOR) &&
            (judge_sender(suspect, &unused) != VERDICT_FOR);
 }
 
@@ -320,7 +320,7 @@ static verdict_t judge_counterpart(const suspect_t *suspect, criterion_t *criter
 
 /** Turn signals are commanded and then on. */
 static verdict_t judge_lights(const suspect_t *suspect, criterion_t *criterion) {
-    const bool is_command = suspect->message == (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND;
+    const bool is_command = suspect->message == AGV_MSG_TURN_SIGNAL_COMMAND;
     const evidence_id_t *vcu = suspect->inquiry->of[AGV_MSG_VEHICLE_STATUS];
     const compare_t compare = {.first = track_of(suspect->heard, FIELD_LIGHTS),
                                .second = track_of(vcu, FIELD_SIGNALS),
@@ -340,7 +340,7 @@ static verdict_t judge_speed(const suspect_t *suspect, criterion_t *criterion) {
     const evidence_id_t *vcu = suspect->inquiry->of[AGV_MSG_VEHICLE_STATUS];
     const compare_t compare = {
         .first = track_of(suspect->heard, FIELD_LONG_0), .second = track_of(vcu, FIELD_WORD_0), .is_unsigned = true};
-    if ((suspect->message != (uint32_t)AGV_MSG_WHEEL_SPEED) || (compare.first == NULL) || (compare.second == NULL)) {
+    if ((suspect->message != AGV_MSG_WHEEL_SPEED) || (compare.first == NULL) || (compare.second == NULL)) {
         return VERDICT_NONE;
     }
     const agreement_t found = compare_values(&compare);
@@ -357,7 +357,7 @@ static verdict_t judge_speed(const suspect_t *suspect, criterion_t *criterion) {
 
 /** Angle control while engaged, and something else in manual mode. */
 static verdict_t judge_eps_mode(const suspect_t *suspect, criterion_t *criterion) {
-    if ((suspect->message != (uint32_t)AGV_MSG_EPS_STATUS) || (suspect->heard->tracks[FIELD_EPS_MODE] == NULL)) {
+    if ((suspect->message != AGV_MSG_EPS_STATUS) || (suspect->heard->tracks[FIELD_EPS_MODE] == NULL)) {
         return VERDICT_NONE;
     }
     return criteria_eps_mode(suspect, mode_of(suspect->inquiry), criterion);
@@ -373,10 +373,10 @@ size_t criteria_judge(const inquiry_t *inquiry, const traffic_id_t *entry, uint3
     suspect_t suspect = {
         .inquiry = inquiry, .entry = entry, .heard = criteria_evidence(inquiry, entry), .message = message};
     suspect.partner = (pair != NULL) ? find_partner(&suspect, pair) : NULL;
-    size_t count = 0u;
-    for (size_t i = 0u; (i < sizeof judges / sizeof judges[0]) && (count < CRITERIA_MAX); i++) {
+    size_t count = 0;
+    for (size_t i = 0; (i < sizeof judges / sizeof judges[0]) && (count < CRITERIA_MAX); i++) {
         criteria[count].verdict = judges[i](&suspect, &criteria[count]);
-        count += (criteria[count].verdict != VERDICT_NONE) ? 1u : 0u;
+        count += (criteria[count].verdict != VERDICT_NONE) ? 1 : 0;
     }
     return count;
 }

@@ -24,14 +24,14 @@ static verdict_t judge_gear(const suspect_t *suspect, criterion_t *criterion) {
     } gears[] = {{AGV_GEAR_P, "P"}, {AGV_GEAR_R, "R"}, {AGV_GEAR_N, "N"}, {AGV_GEAR_D, "D"}};
     const track_t *track = suspect->heard->tracks[FIELD_BYTE_0];
     char text[GEARS_SIZE] = "";
-    for (size_t i = 0u; i < sizeof gears / sizeof gears[0]; i++) {
+    for (size_t i = 0; i < sizeof gears / sizeof gears[0]; i++) {
         bool was_seen = false;
-        for (size_t at = 0u; at < track->count; at++) {
+        for (size_t at = 0; at < track->count; at++) {
             was_seen = was_seen || (track->changes[at].value == gears[i].gear);
         }
         if (was_seen) {
             const size_t used = strlen(text);
-            (void)snprintf(&text[used], sizeof text - used, "%s%s", (used > 0u) ? ", " : "", gears[i].word);
+            (void)snprintf(&text[used], sizeof text - used, "%s%s", (used > 0) ? ", " : "", gears[i].word);
         }
     }
     return (track->lowest == track->highest) ? say(criterion, VERDICT_REFUSES, "its gear is always %s", text)
@@ -81,8 +81,8 @@ static verdict_t judge_steering_command(const suspect_t *suspect, criterion_t *c
 
 /** A wheel does not jump. */
 static bool is_smooth(const track_t *track) {
-    for (size_t i = 1u; i < track->count; i++) {
-        if (abs(track->changes[i].value - track->changes[i - 1u].value) > JUMP_DDEG) {
+    for (size_t i = 1; i < track->count; i++) {
+        if (abs(track->changes[i].value - track->changes[i - 1].value) > JUMP_DDEG) {
             return false;
         }
     }
@@ -110,14 +110,13 @@ static verdict_t judge_steering_status(const suspect_t *suspect, criterion_t *cr
 
 static verdict_t judge_mode(const suspect_t *suspect, criterion_t *criterion) {
     const track_t *mode = suspect->heard->tracks[FIELD_MODE];
-    const bool is_one =
-        (mode->lowest == (int32_t)AGV_VCU_FLAG_MANUAL) || (mode->lowest == (int32_t)AGV_VCU_FLAG_AUTOPILOT);
+    const bool is_one = (mode->lowest == AGV_VCU_FLAG_MANUAL) || (mode->lowest == AGV_VCU_FLAG_AUTOPILOT);
     if (!is_one || (mode->highest > (int32_t)AGV_VCU_FLAG_AUTOPILOT)) {
         return say(criterion, VERDICT_AGAINST, "has both modes at once");
     }
     if (mode->lowest == mode->highest) {
         return say(criterion, VERDICT_AGAINST, "its mode is always %s",
-                   (mode->lowest == (int32_t)AGV_VCU_FLAG_MANUAL) ? "manual" : "autopilot");
+                   (mode->lowest == AGV_VCU_FLAG_MANUAL) ? "manual" : "autopilot");
     }
     if (mode->count * FRAMES_PER_CHANGE > suspect->heard->frames) {
         return say(criterion, VERDICT_REFUSES, "its mode flickers");
@@ -135,7 +134,7 @@ static verdict_t judge_positions(const suspect_t *suspect, criterion_t *criterio
         return VERDICT_NONE;
     }
     if (memcmp(suspect->entry->bits_ever, suspect->entry->bits_always, sizeof suspect->entry->bits_ever) != 0) {
-        static const uint8_t zeros[AGV_DLC] = {0u};
+        static const uint8_t zeros[AGV_DLC] = {0};
         const bool is_other = memcmp(suspect->entry->bits_always, zeros, sizeof zeros) == 0;
         return is_other ? say(criterion, VERDICT_REFUSES, "all its positions change")
                         : say(criterion, VERDICT_AGAINST, "its positions change");
@@ -175,22 +174,22 @@ static verdict_t judge_wheels(const suspect_t *suspect, criterion_t *criterion) 
 /** Share of the time in which the EPS is under angle control, in a mode of the vehicle. */
 static double angle_control(const compare_t *compare, bool is_engaged, uint64_t *samples) {
     const uint64_t step_us = (uint64_t)VALUE_SAMPLE_MS * US_PER_MS;
-    size_t at[2] = {0u, 0u};
-    uint64_t controlled = 0u;
-    *samples = 0u;
+    size_t at[2] = {0, 0};
+    uint64_t controlled = 0;
+    *samples = 0;
     for (uint64_t t_us = compare->first->changes[0].at_us; t_us <= compare->first->until_us; t_us += step_us) {
         const bool now = (track_value(compare->second, &at[1], t_us) & (int32_t)AGV_VCU_FLAG_AUTOPILOT) != 0;
         const int32_t mode = track_value(compare->first, &at[0], t_us);
-        *samples += (now == is_engaged) ? 1u : 0u;
-        controlled += ((now == is_engaged) && (mode == ANGLE_CONTROL)) ? 1u : 0u;
+        *samples += (now == is_engaged) ? 1 : 0;
+        controlled += ((now == is_engaged) && (mode == ANGLE_CONTROL)) ? 1 : 0;
     }
-    return (*samples > 0u) ? (double)controlled / (double)*samples : 0.0;
+    return (*samples > 0) ? (double)controlled / (double)*samples : 0.0;
 }
 
 verdict_t criteria_eps_mode(const suspect_t *suspect, const track_t *mode, criterion_t *criterion) {
     const compare_t compare = {.first = suspect->heard->tracks[FIELD_EPS_MODE], .second = mode};
     const counter_use_t *faults = &suspect->heard->counters[1];
-    if ((faults->steps + faults->other_steps) * 2u >= faults->frames) {
+    if ((faults->steps + faults->other_steps) * 2 >= faults->frames) {
         return say(criterion, VERDICT_REFUSES, "its byte 8 counts, so it has no faults");
     }
     if (compare.first->lowest == compare.first->highest) {
@@ -202,7 +201,7 @@ verdict_t criteria_eps_mode(const suspect_t *suspect, const track_t *mode, crite
     uint64_t samples[2];
     const double engaged = angle_control(&compare, true, &samples[0]);
     const double manual = angle_control(&compare, false, &samples[1]);
-    if ((samples[0] < (uint64_t)MODE_SAMPLES_MIN) || (samples[1] < (uint64_t)MODE_SAMPLES_MIN)) {
+    if ((samples[0] < MODE_SAMPLES_MIN) || (samples[1] < MODE_SAMPLES_MIN)) {
         return VERDICT_NONE;
     }
     if ((engaged >= TOGETHER) && (manual <= 1.0 - TOGETHER)) {
@@ -225,8 +224,8 @@ verdict_t criteria_values(const suspect_t *suspect, criterion_t *criterion) {
         [AGV_MSG_WHEEL_SPEED] = judge_wheels,
     };
     const uint32_t fields = field_of_message(suspect->message);
-    for (uint32_t field = 0u; field < (uint32_t)FIELD_COUNT; field++) {
-        if ((((fields >> field) & 1u) != 0u) && (suspect->heard->tracks[field] == NULL)) {
+    for (uint32_t field = 0; field < FIELD_COUNT; field++) {
+        if ((((fields >> field) & 1) != 0) && (suspect->heard->tracks[field] == NULL)) {
             return VERDICT_NONE; /* out of memory */
         }
     }

@@ -13,15 +13,15 @@ struct evidence {
 };
 
 evidence_t *evidence_new(const agv_config_t *configs, size_t count) {
-    evidence_t *evidence = calloc(1u, sizeof *evidence);
+    evidence_t *evidence = calloc(1, sizeof *evidence);
     if (evidence == NULL) {
         return NULL;
     }
     (void)memset(evidence->messages, UINT8_MAX, sizeof evidence->messages);
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         agv_ids_t ids;
         agv_config_ids(&configs[i], &ids);
-        for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
+        for (uint32_t message = 0; message < AGV_MSG_COUNT; message++) {
             evidence->messages[ids.of[message]] = message;
         }
     }
@@ -29,8 +29,8 @@ evidence_t *evidence_new(const agv_config_t *configs, size_t count) {
 }
 
 static void drop_tracks(evidence_id_t *heard, uint32_t kept) {
-    for (uint32_t field = 0u; field < (uint32_t)FIELD_COUNT; field++) {
-        if (((kept >> field) & 1u) == 0u) {
+    for (uint32_t field = 0; field < FIELD_COUNT; field++) {
+        if (((kept >> field) & 1) == 0) {
             track_free(heard->tracks[field]);
             heard->tracks[field] = NULL;
         }
@@ -38,10 +38,10 @@ static void drop_tracks(evidence_id_t *heard, uint32_t kept) {
 }
 
 void evidence_free(evidence_t *evidence) {
-    for (size_t i = 0u; (evidence != NULL) && (i < (size_t)HAL_CAN_SIDES * IDS); i++) {
-        evidence_id_t *heard = evidence->ids[i / (size_t)IDS][i % (size_t)IDS];
+    for (size_t i = 0; (evidence != NULL) && (i < (size_t)HAL_CAN_SIDES * IDS); i++) {
+        evidence_id_t *heard = evidence->ids[i / IDS][i % IDS];
         if (heard != NULL) {
-            drop_tracks(heard, 0u);
+            drop_tracks(heard, 0);
             free(heard);
         }
     }
@@ -50,19 +50,19 @@ void evidence_free(evidence_t *evidence) {
 
 /** The fields that are worth a track: those of the messages that the identifier may carry. */
 static uint32_t fields_of(const evidence_id_t *heard) {
-    uint32_t fields = (heard->message != EVIDENCE_UNKNOWN) ? field_of_message(heard->message) : 0u;
-    for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
-        fields |= (((heard->fits >> message) & 1u) != 0u) ? field_of_message(message) : 0u;
+    uint32_t fields = (heard->message != EVIDENCE_UNKNOWN) ? field_of_message(heard->message) : 0;
+    for (uint32_t message = 0; message < AGV_MSG_COUNT; message++) {
+        fields |= (((heard->fits >> message) & 1) != 0) ? field_of_message(message) : 0;
     }
     return fields;
 }
 
 static void take_fields(evidence_id_t *heard, const uint8_t data[AGV_DLC], uint64_t t_us) {
     const uint32_t fields = fields_of(heard);
-    for (uint32_t field = 0u; field < (uint32_t)FIELD_COUNT; field++) {
-        if (((fields >> field) & 1u) != 0u) {
+    for (uint32_t field = 0; field < FIELD_COUNT; field++) {
+        if (((fields >> field) & 1) != 0) {
             heard->tracks[field] =
-                (heard->tracks[field] != NULL) ? heard->tracks[field] : calloc(1u, sizeof *heard->tracks[field]);
+                (heard->tracks[field] != NULL) ? heard->tracks[field] : calloc(1, sizeof *heard->tracks[field]);
             if (heard->tracks[field] != NULL) {
                 track_add(heard->tracks[field], (field_t)field, data, t_us);
             }
@@ -71,22 +71,22 @@ static void take_fields(evidence_id_t *heard, const uint8_t data[AGV_DLC], uint6
 }
 
 static void take_silence(evidence_id_t *heard, uint64_t t_us) {
-    if ((heard->frames > 0u) && (t_us - heard->last_us >= EVIDENCE_SILENCE_US) &&
+    if ((heard->frames > 0) && (t_us - heard->last_us >= EVIDENCE_SILENCE_US) &&
         (heard->silence_count < EVIDENCE_SILENCES_MAX)) {
         heard->silences[heard->silence_count] = (silence_t){.begin_us = heard->last_us, .end_us = t_us};
         heard->silence_count++;
     }
-    heard->first_us = (heard->frames == 0u) ? t_us : heard->first_us;
+    heard->first_us = (heard->frames == 0) ? t_us : heard->first_us;
     heard->last_us = t_us;
 }
 
 static void take_fit(evidence_id_t *heard, const hal_can_frame_t *frame) {
-    const bool is_well_formed = (frame->length == AGV_DLC) && ((frame->flags & HAL_CAN_FD) == 0u);
+    const bool is_well_formed = (frame->length == AGV_DLC) && ((frame->flags & HAL_CAN_FD) == 0);
     const uint32_t before = heard->fits;
     if (heard->message != EVIDENCE_UNKNOWN) {
-        heard->misfits += (is_well_formed && !fits_protocol(heard->message, frame->data)) ? 1u : 0u;
+        heard->misfits += (is_well_formed && !fits_protocol(heard->message, frame->data)) ? 1 : 0;
     }
-    heard->fits = is_well_formed ? fits_frame(heard->fits, frame->data) : 0u;
+    heard->fits = is_well_formed ? fits_frame(heard->fits, frame->data) : 0;
     if (heard->fits != before) {
         drop_tracks(heard, fields_of(heard));
     }
@@ -95,7 +95,7 @@ static void take_fit(evidence_id_t *heard, const hal_can_frame_t *frame) {
 static evidence_id_t *find(evidence_t *evidence, hal_can_side_t side, uint32_t id) {
     evidence_id_t **slot = &evidence->ids[side][id];
     if (*slot == NULL) {
-        *slot = calloc(1u, sizeof **slot);
+        *slot = calloc(1, sizeof **slot);
         if (*slot != NULL) {
             **slot = (evidence_id_t){.id = id, .side = side, .message = evidence->messages[id], .fits = FITS_ALL};
         }
@@ -105,7 +105,7 @@ static evidence_id_t *find(evidence_t *evidence, hal_can_side_t side, uint32_t i
 
 void evidence_frame(evidence_t *evidence, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
     const uint32_t others = HAL_CAN_ERROR | HAL_CAN_REMOTE | HAL_CAN_EXTENDED;
-    if (((frame->flags & others) != 0u) || (frame->id >= (uint32_t)IDS)) {
+    if (((frame->flags & others) != 0) || (frame->id >= IDS)) {
         return;
     }
     evidence_id_t *heard = find(evidence, side, frame->id);
@@ -123,7 +123,7 @@ void evidence_frame(evidence_t *evidence, hal_can_side_t side, const hal_can_fra
 }
 
 const evidence_id_t *evidence_of(const evidence_t *evidence, hal_can_side_t side, uint32_t id) {
-    return (id < (uint32_t)IDS) ? evidence->ids[side][id] : NULL;
+    return (id < IDS) ? evidence->ids[side][id] : NULL;
 }
 
 bool evidence_contradicts(const evidence_id_t *heard) {

@@ -15,15 +15,15 @@ static struct {
 } masks;
 
 static bool has_reserved_bits(uint32_t message, const uint8_t data[AGV_DLC]) {
-    for (uint32_t i = 0u; !masks.made && (i < (uint32_t)AGV_MSG_COUNT); i++) {
+    for (uint32_t i = 0; !masks.made && (i < AGV_MSG_COUNT); i++) {
         signals_mask(i, masks.of[i]);
     }
     masks.made = true;
-    uint32_t reserved = 0u;
-    for (size_t i = 0u; i < AGV_DLC; i++) {
+    uint32_t reserved = 0;
+    for (size_t i = 0; i < AGV_DLC; i++) {
         reserved |= (uint32_t)(data[i] & (uint8_t)~masks.of[message][i]);
     }
-    return reserved != 0u;
+    return reserved != 0;
 }
 
 /** Two rear wheels turn about as fast, and no faster than a vehicle of this kind drives. */
@@ -39,15 +39,15 @@ static bool are_wheels(const uint8_t data[AGV_DLC]) {
 static bool are_positions(const uint8_t data[AGV_DLC]) {
     agv_steering_position_t position;
     (void)agv_unpack_steering_position(&position, data);
-    const bool is_empty = (position.left_raw == 0u) && (position.centre_raw == 0u) && (position.right_raw == 0u);
+    const bool is_empty = (position.left_raw == 0) && (position.centre_raw == 0) && (position.right_raw == 0);
     return is_empty || ((position.left_raw < position.centre_raw) && (position.centre_raw < position.right_raw)) ||
            ((position.left_raw > position.centre_raw) && (position.centre_raw > position.right_raw));
 }
 
 bool fits_protocol(uint32_t message, const uint8_t data[AGV_DLC]) {
-    const bool has_mode = (data[MODE_AT] & (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT)) != 0u;
+    const bool has_mode = (data[MODE_AT] & (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT)) != 0;
     return !has_reserved_bits(message, data) && agv_value_is_valid(message, data) &&
-           (has_mode || (message != (uint32_t)AGV_MSG_VEHICLE_STATUS));
+           (has_mode || (message != AGV_MSG_VEHICLE_STATUS));
 }
 
 static bool is_plausible(uint32_t message, const uint8_t data[AGV_DLC]) {
@@ -66,9 +66,9 @@ static bool is_plausible(uint32_t message, const uint8_t data[AGV_DLC]) {
 
 uint32_t fits_frame(uint32_t fits, const uint8_t data[AGV_DLC]) {
     uint32_t left = fits;
-    for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
+    for (uint32_t message = 0; message < AGV_MSG_COUNT; message++) {
         const uint32_t bit = agv_message_bit(message);
-        if (((left & bit) != 0u) && !is_plausible(message, data)) {
+        if (((left & bit) != 0) && !is_plausible(message, data)) {
             left &= ~bit;
         }
     }

@@ -11,7 +11,7 @@
 #include "agv/protocol.h"
 
 /** Every message. */
-#define FITS_ALL ((1u << (uint32_t)AGV_MSG_COUNT) - 1u)
+#define FITS_ALL ((1u << AGV_MSG_COUNT) - 1u)
 
 /**
  * Take away the messages that a payload cannot be: a reserved bit is set, a value is invalid, no mode is reported, or

@@ -11,11 +11,11 @@ static const struct {
     uint32_t mask;
     int32_t step;
 } fields[FIELD_COUNT] = {
-    [FIELD_BYTE_0] = {0u, 1u, 0xFFu, 1},        [FIELD_BYTE_1] = {1u, 1u, 0xFFu, NEVER},
-    [FIELD_WORD_0] = {0u, 2u, 0xFFFFu, 5},      [FIELD_WORD_2] = {2u, 2u, 0xFFFFu, 5},
-    [FIELD_LONG_0] = {0u, 4u, 0xFFFFFFFFu, 20}, [FIELD_LONG_4] = {4u, 4u, 0xFFFFFFFFu, 20},
-    [FIELD_EPS_MODE] = {3u, 1u, 0xFFu, 1},      [FIELD_LIGHTS] = {4u, 1u, 0x30u, 1},
-    [FIELD_SIGNALS] = {6u, 1u, 0x30u, 1},       [FIELD_MODE] = {6u, 1u, 0xC0u, 1},
+    [FIELD_BYTE_0] = {0, 1, 0xFFu, 1},        [FIELD_BYTE_1] = {1, 1, 0xFFu, NEVER},
+    [FIELD_WORD_0] = {0, 2, 0xFFFFu, 5},      [FIELD_WORD_2] = {2, 2, 0xFFFFu, 5},
+    [FIELD_LONG_0] = {0, 4, 0xFFFFFFFFu, 20}, [FIELD_LONG_4] = {4, 4, 0xFFFFFFFFu, 20},
+    [FIELD_EPS_MODE] = {3, 1, 0xFFu, 1},      [FIELD_LIGHTS] = {4, 1, 0x30u, 1},
+    [FIELD_SIGNALS] = {6, 1, 0x30u, 1},       [FIELD_MODE] = {6, 1, 0xC0u, 1},
 };
 
 /** The fields of each message; one without needs no track. */
@@ -37,8 +37,8 @@ uint32_t field_of_message(uint32_t message) {
 }
 
 static int32_t field_read(field_t field, const uint8_t data[AGV_DLC]) {
-    uint32_t raw = 0u;
-    for (uint32_t i = 0u; i < fields[field].bytes; i++) {
+    uint32_t raw = 0;
+    for (uint32_t i = 0; i < fields[field].bytes; i++) {
         raw |= (uint32_t)data[fields[field].at + i] << (i * (uint32_t)BITS_PER_BYTE);
     }
     return (int32_t)(raw & fields[field].mask);
@@ -49,9 +49,8 @@ static bool grow(track_t *track) {
     if (track->count < track->room) {
         return true;
     }
-    const size_t room = (track->room == 0u) ? (size_t)ROOM_FIRST : track->room * 2u;
-    track_change_t *changes =
-        (track->count < (size_t)ROOM_MAX) ? realloc(track->changes, room * sizeof *changes) : NULL;
+    const size_t room = (track->room == 0) ? (size_t)ROOM_FIRST : track->room * 2;
+    track_change_t *changes = (track->count < ROOM_MAX) ? realloc(track->changes, room * sizeof *changes) : NULL;
     if (changes == NULL) {
         return false;
     }
@@ -61,15 +60,15 @@ static bool grow(track_t *track) {
 }
 
 static bool is_change(const track_t *track, int32_t step, int32_t value) {
-    if (track->count == 0u) {
+    if (track->count == 0) {
         return true;
     }
-    return llabs((long long)value - track->changes[track->count - 1u].value) >= step;
+    return llabs((long long)value - track->changes[track->count - 1].value) >= step;
 }
 
 void track_add(track_t *track, field_t field, const uint8_t data[AGV_DLC], uint64_t t_us) {
     const int32_t value = field_read(field, data);
-    const bool is_first = track->count == 0u;
+    const bool is_first = track->count == 0;
     track->lowest = (is_first || (value < track->lowest)) ? value : track->lowest;
     track->highest = (is_first || (value > track->highest)) ? value : track->highest;
     if (!track->is_full && is_change(track, fields[field].step, value)) {
@@ -86,7 +85,7 @@ void track_add(track_t *track, field_t field, const uint8_t data[AGV_DLC], uint6
 }
 
 int32_t track_value(const track_t *track, size_t *at, uint64_t t_us) {
-    while ((*at + 1u < track->count) && (track->changes[*at + 1u].at_us <= t_us)) {
+    while ((*at + 1 < track->count) && (track->changes[*at + 1].at_us <= t_us)) {
         (*at)++;
     }
     return track->changes[*at].value;

@@ -12,7 +12,7 @@ void setUp(void) {
 }
 
 static bool exists(atlas_state_t state, bool gateway, agv_fault_t first, agv_fault_t second, uint32_t distance) {
-    for (uint32_t number = 0u; number < atlas_case_count(); number++) {
+    for (uint32_t number = 0; number < atlas_case_count(); number++) {
         atlas_case_t pair;
         if (atlas_case_get(number, &pair) && (pair.state == state) && (pair.gateway == gateway) &&
             (pair.first->fault == first) && (pair.second->fault == second) && (pair.distance == distance)) {
@@ -23,8 +23,8 @@ static bool exists(atlas_state_t state, bool gateway, agv_fault_t first, agv_fau
 }
 
 void test_every_state_and_distance_of_two_faults_that_can_always_come(void) {
-    for (int state = 0; state < (int)ATLAS_STATES; state++) {
-        for (uint32_t distance = 0u; distance < ATLAS_DISTANCES; distance++) {
+    for (int state = 0; state < ATLAS_STATES; state++) {
+        for (uint32_t distance = 0; distance < ATLAS_DISTANCES; distance++) {
             TEST_ASSERT_TRUE(
                 exists((atlas_state_t)state, false, AGV_FAULT_VCU_HEARTBEAT_LOST, AGV_FAULT_S_DRIVER_ALARM, distance));
             TEST_ASSERT_TRUE(
@@ -34,18 +34,18 @@ void test_every_state_and_distance_of_two_faults_that_can_always_come(void) {
 }
 
 void test_pairs_that_cannot_happen(void) {
-    TEST_ASSERT_FALSE(exists(ATLAS_ACTIVE, false, AGV_FAULT_BUS_OFF, AGV_FAULT_BUS_OFF, 0u));
+    TEST_ASSERT_FALSE(exists(ATLAS_ACTIVE, false, AGV_FAULT_BUS_OFF, AGV_FAULT_BUS_OFF, 0));
     TEST_ASSERT_FALSE(
-        exists(ATLAS_STANDBY, false, AGV_FAULT_AI_HEARTBEAT_LOST, AGV_FAULT_BUS_OFF, 0u));       /* SUP-3: engaged */
-    TEST_ASSERT_FALSE(exists(ATLAS_ACTIVE, false, AGV_FAULT_AI_BUS_OFF, AGV_FAULT_BUS_OFF, 0u)); /* no AI side */
-    TEST_ASSERT_FALSE(exists(ATLAS_ACTIVE, true, AGV_FAULT_SELF_TEST_FAILED, AGV_FAULT_BUS_OFF, 0u)); /* at the start */
+        exists(ATLAS_STANDBY, false, AGV_FAULT_AI_HEARTBEAT_LOST, AGV_FAULT_BUS_OFF, 0));       /* SUP-3: engaged */
+    TEST_ASSERT_FALSE(exists(ATLAS_ACTIVE, false, AGV_FAULT_AI_BUS_OFF, AGV_FAULT_BUS_OFF, 0)); /* no AI side */
+    TEST_ASSERT_FALSE(exists(ATLAS_ACTIVE, true, AGV_FAULT_SELF_TEST_FAILED, AGV_FAULT_BUS_OFF, 0)); /* at the start */
 }
 
 void test_a_pair_as_a_scenario(void) {
     const atlas_case_t pair = {.first = campaign_row(AGV_FAULT_EMERGENCY_STOP),
                                .second = campaign_row(AGV_FAULT_OUTPUT_FEEDBACK),
                                .state = ATLAS_ACTIVE,
-                               .distance = 2u};
+                               .distance = 2};
     atlas_scenario_write(&text, &pair);
     TEST_ASSERT_EQUAL_STRING("name: ACTIVE, EMERGENCY_STOP, then OUTPUT_FEEDBACK after 50 ms\n"
                              "shows: [EMERGENCY_STOP]\n"
@@ -68,7 +68,7 @@ void test_alarms_of_the_first_fault_stay_set(void) {
     const atlas_case_t pair = {.first = campaign_row(AGV_FAULT_VCU_EPS_HARDWARE_FAULT),
                                .second = campaign_row(AGV_FAULT_EPS_MOTOR_ENCODER),
                                .state = ATLAS_STANDBY,
-                               .distance = 1u};
+                               .distance = 1};
     atlas_scenario_write(&text, &pair);
     TEST_ASSERT_NOT_NULL(strstr(text.bytes, "  - {at_ms: 3000, vcu: set, field: alarms, value: 10h}\n"
                                             "  - {at_ms: 3001, vcu: set, field: alarms, value: 10h}\n"

@@ -37,7 +37,7 @@ void test_each_way_to_be_weaker(void) {
         {330001, 800000, 3000000, true, ATLAS_LATE_FRAME}, {ATLAS_NEVER, 800000, 3000000, true, ATLAS_LATE_FRAME},
         {300000, 800000, 3200001, true, ATLAS_LATE_STOP},  {300000, 800000, 3000000, false, ATLAS_NOT_READY},
     };
-    for (size_t r = 0u; r < sizeof rows / sizeof rows[0]; r++) {
+    for (size_t r = 0; r < sizeof rows / sizeof rows[0]; r++) {
         pair.safe_us = rows[r].safe_us;
         pair.open_us = rows[r].open_us;
         pair.stop_us = rows[r].stop_us;

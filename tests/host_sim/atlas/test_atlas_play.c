@@ -8,7 +8,7 @@
 static atlas_play_t *play;
 
 void setUp(void) {
-    play = calloc(1u, sizeof *play);
+    play = calloc(1, sizeof *play);
     TEST_ASSERT_NOT_NULL(play);
 }
 
@@ -34,7 +34,7 @@ void test_a_lost_vcu_alone(void) {
 
 void test_the_second_fault_alone_comes_later(void) {
     const atlas_outcome_t *outcome = outcome_of(
-        (atlas_case_t){.second = campaign_row(AGV_FAULT_EMERGENCY_STOP), .state = ATLAS_ACTIVE, .distance = 3u});
+        (atlas_case_t){.second = campaign_row(AGV_FAULT_EMERGENCY_STOP), .state = ATLAS_ACTIVE, .distance = 3});
     TEST_ASSERT_EQUAL(AGV_FAULT_EMERGENCY_STOP, outcome->reason);
     TEST_ASSERT_EQUAL(AGV_STATE_SAFE, outcome->state);
     TEST_ASSERT_INT32_WITHIN(1000, 500000, outcome->open_us);
@@ -42,7 +42,7 @@ void test_the_second_fault_alone_comes_later(void) {
 
 void test_states_in_which_nothing_new_trips(void) {
     static const atlas_state_t states[] = {ATLAS_TRIPPED, ATLAS_SAFE};
-    for (size_t i = 0u; i < sizeof states / sizeof states[0]; i++) {
+    for (size_t i = 0; i < sizeof states / sizeof states[0]; i++) {
         const atlas_outcome_t *outcome =
             outcome_of((atlas_case_t){.first = campaign_row(AGV_FAULT_S_DRIVER_ALARM), .state = states[i]});
         TEST_ASSERT_EQUAL(-1, outcome->reason);

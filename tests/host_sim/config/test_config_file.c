@@ -97,16 +97,16 @@ void test_every_setting_is_refused_beyond_its_limits(void) {
         }
         char text[128];
         char expected[128];
-        (void)snprintf(text, sizeof text, "\n%s: %u\n", info->name, info->highest + 1u);
+        (void)snprintf(text, sizeof text, "\n%s: %u\n", info->name, info->highest + 1);
         const bool is_id = (strncmp(info->name, "id_", 3) == 0) || (strcmp(info->name, "status_frame_id") == 0);
         (void)snprintf(expected, sizeof expected,
                        is_id ? "c.yaml:2: %s: %u is not within %03Xh to %03Xh"
                              : "c.yaml:2: %s: %u is not within %u to %u",
-                       info->name, info->highest + 1u, info->lowest, info->highest);
+                       info->name, info->highest + 1, info->lowest, info->highest);
         load_bad(text, expected);
         if (info->lowest > 0) {
-            (void)snprintf(text, sizeof text, "%s: %u\n", info->name, info->lowest - 1u);
-            (void)snprintf(expected, sizeof expected, "c.yaml:1: %s: %u is not within", info->name, info->lowest - 1u);
+            (void)snprintf(text, sizeof text, "%s: %u\n", info->name, info->lowest - 1);
+            (void)snprintf(expected, sizeof expected, "c.yaml:1: %s: %u is not within", info->name, info->lowest - 1);
             load_bad(text, expected);
         }
     }
@@ -142,7 +142,7 @@ void test_a_switch_may_be_a_boolean(void) {
 
 /* Shows: INT-2 */
 void test_every_class_may_be_strengthened_and_weakened_as_far_as_allowed(void) {
-    for (uint32_t i = 0; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+    for (uint32_t i = 0; i < AGV_FAULT_COUNT; i++) {
         const agv_fault_t fault = (agv_fault_t)i;
         char key[CONFIG_CLASS_KEY_SIZE];
         char text[128];
@@ -247,7 +247,7 @@ void test_what_is_no_yaml(void) {
     load_bad("park: at_once\n...\npark: at_once\n", "c.yaml:3: not YAML: ");
     char nested[128];
     memset(nested, '[', sizeof nested);
-    nested[sizeof nested - 1u] = '\0';
+    nested[sizeof nested - 1] = '\0';
     load_bad(nested, "c.yaml:1: nested too deeply\n");
 }
 
@@ -313,7 +313,7 @@ void test_options_change_what_the_file_says(void) {
     TEST_ASSERT_TRUE(config_options_make(&options, &config));
     assert_default();
     static const char text[] = "topology: gateway\nid_set: heading\nown_heartbeat: frozen\n";
-    options.path = scratch_write("c.yaml", text, sizeof text - 1u);
+    options.path = scratch_write("c.yaml", text, sizeof text - 1);
     options.id_set = AGV_ID_SET_TABLE;
     options.shadow = true;
     TEST_ASSERT_TRUE(config_options_make(&options, &config));

@@ -44,7 +44,7 @@ static unsigned queued;
 static int32_t held_ddeg;
 
 void setUp(void) {
-    queued = 0u;
+    queued = 0;
 }
 
 static vehicle_state_t vehicle_now(void) {
@@ -61,7 +61,7 @@ static void send(agv_message_t message, const uint8_t data[AGV_DLC]) {
 }
 
 static void enqueue(hal_can_side_t side, const hal_can_frame_t *frame) {
-    if (queued < (unsigned)QUEUE) {
+    if (queued < QUEUE) {
         queue[queued] = *frame;
         towards[queued] = side;
         queued++;
@@ -84,12 +84,12 @@ static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, co
     (void)ctx;
     (void)t_us;
     if ((side == HAL_CAN_AI) && (from != SCENARIO_FROM_SUPERVISOR) && engaged) {
-        for (unsigned i = 0u; i < stub->passes; i++) {
+        for (unsigned i = 0; i < stub->passes; i++) {
             enqueue(HAL_CAN_VEHICLE, frame);
-            steer_as_the_stub(&queue[queued - 1u]);
+            steer_as_the_stub(&queue[queued - 1]);
         }
     }
-    if (stub->gateway && (side == HAL_CAN_VEHICLE) && (from == (int)VEHICLE_VCU)) {
+    if (stub->gateway && (side == HAL_CAN_VEHICLE) && (from == VEHICLE_VCU)) {
         enqueue(HAL_CAN_AI, frame);
     }
 }
@@ -105,10 +105,10 @@ static void send_safe(uint32_t t_ms) {
     }
     steering[0] = (uint8_t)held_ddeg;
     steering[1] = (uint8_t)(held_ddeg >> 8);
-    if (stub->holds && (t_ms >= stub->hold_ms) && (t_ms % HOLD_CYCLE_MS == 0u)) {
+    if (stub->holds && (t_ms >= stub->hold_ms) && (t_ms % HOLD_CYCLE_MS == 0)) {
         send(AGV_MSG_STEERING_COMMAND, steering);
     }
-    if (t_ms % CYCLE_MS == 0u) {
+    if (t_ms % CYCLE_MS == 0) {
         if (t_ms >= stub->parks_ms) {
             send(AGV_MSG_GEAR_COMMAND, gear);
         }
@@ -128,12 +128,12 @@ static void act(void *ctx, uint64_t now_ms) {
     (void)ctx;
     hal_safety_output_set(scenario_testbed_port(&testbed),
                           (t_ms >= READY_MS) && ((stub->open_ms == NEVER) || (t_ms < stub->open_ms)));
-    for (unsigned i = 0u; i < queued; i++) {
+    for (unsigned i = 0; i < queued; i++) {
         if (!is_safe || (towards[i] == HAL_CAN_AI)) {
             (void)hal_can_send(scenario_testbed_port(&testbed), towards[i], &queue[i]);
         }
     }
-    queued = 0u;
+    queued = 0;
     if (is_safe) {
         send_safe(t_ms);
     }
@@ -223,26 +223,26 @@ __attribute__((format(printf, 1, 2))) static const char *with(const char *format
 
 /** One that reacts: safe commands soon after the cause, the output opens a little later. */
 static const stub_t GOOD = {.safe_ms = TRIP_MS + 200, .open_ms = TRIP_MS + 600};
-static const stub_t GOOD_GATEWAY = {.gateway = true, .passes = 1u, .safe_ms = TRIP_MS + 100, .open_ms = TRIP_MS + 600};
+static const stub_t GOOD_GATEWAY = {.gateway = true, .passes = 1, .safe_ms = TRIP_MS + 100, .open_ms = TRIP_MS + 600};
 static const stub_t MUTE = {0};
-static const stub_t PASSING = {.gateway = true, .passes = 1u};
+static const stub_t PASSING = {.gateway = true, .passes = 1};
 
 static const stub_t ROLLS = {.rolls = true, .safe_ms = TRIP_MS};
 static const stub_t ROLLS_AND_OPENS = {.rolls = true, .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 5000};
 static const stub_t STAYS = {.safe_ms = TRIP_MS};
-static const stub_t FORGETS = {.gateway = true, .passes = 1u, .only_engaged = true};
+static const stub_t FORGETS = {.gateway = true, .passes = 1, .only_engaged = true};
 static const stub_t RESETS = {.safe_ms = TRIP_MS, .safe_end_ms = 6000};
 static const stub_t RESETS_BY_PIN = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .setting = "reset_input: pin\n"};
 static const stub_t RESETS_BY_BOTH = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .setting = "reset_input: both\n"};
 static const stub_t RESETS_LATER = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .setting = "confirm_timeout_ms: 1000\n"};
 static const stub_t TRIPS_AGAIN = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .again_ms = 6300};
 static const stub_t OPENS_LATE = {
-    .gateway = true, .passes = 1u, .open_ms = TRIP_MS + 450, .setting = "tx_stalled_ms: 500\n"};
+    .gateway = true, .passes = 1, .open_ms = TRIP_MS + 450, .setting = "tx_stalled_ms: 500\n"};
 static const stub_t LATE_GEAR = {.setting = "gear_command_timeout_ms: 2000\n"};
 static const stub_t HANGS_AND_OPENS = {
-    .gateway = true, .passes = 1u, .open_ms = TRIP_MS + 600, .setting = "watchdog_period_ms: 600\n"};
+    .gateway = true, .passes = 1, .open_ms = TRIP_MS + 600, .setting = "watchdog_period_ms: 600\n"};
 static const stub_t HANGS_AND_OPENS_LATE = {
-    .gateway = true, .passes = 1u, .open_ms = TRIP_MS + 800, .setting = "watchdog_period_ms: 600\n"};
+    .gateway = true, .passes = 1, .open_ms = TRIP_MS + 800, .setting = "watchdog_period_ms: 600\n"};
 static const stub_t STEERS_LATE = {
     .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 10, .holds = true, .hold_ddeg = -300, .hold_ms = TRIP_MS + 190};
 static const stub_t STEERS_ONCE = {.safe_ms = TRIP_MS,
@@ -375,14 +375,14 @@ static const struct {
      "  - {at_ms: 3300, ai: drive, gear: D, throttle_pct: 60, steer_deg: -60}\n"
      "  - {at_ms: 3900, ai: mute, message: steering_command}\n"},
     {HAZARD_FALSE_COMMAND, NOT_SENT,
-     &(const stub_t){.gateway = true, .passes = 1u, .forges_ms = TRIP_MS, .only_engaged = true}, NULL,
+     &(const stub_t){.gateway = true, .passes = 1, .forges_ms = TRIP_MS, .only_engaged = true}, NULL,
      "  - {at_ms: 2000, ai: drive, gear: D, throttle_pct: 20}\n"},
     {HAZARD_FALSE_COMMAND, NOT_OVERRIDDEN, &PASSING, &GOOD_GATEWAY, ROGUE_THROTTLE},
     {HAZARD_FALSE_COMMAND, NOT_OVERRIDDEN, &PASSING, &GOOD_GATEWAY,
      "  - {at_ms: 3000, bus: deliver, kind: fd, message: gear_command, bytes: \"01 00\"}\n"},
     /* a stalled transmitter opens the output after tx_stalled_ms, so that nobody has to override before */
     {HAZARD_FALSE_COMMAND, NOT_OVERRIDDEN,
-     &(const stub_t){.gateway = true, .passes = 1u, .setting = "tx_stalled_ms: 500\n"}, &OPENS_LATE,
+     &(const stub_t){.gateway = true, .passes = 1, .setting = "tx_stalled_ms: 500\n"}, &OPENS_LATE,
      "  - {at_ms: 2990, supervisor: stall_tx}\n" ROGUE_THROTTLE},
     {HAZARD_FALSE_COMMAND, NOT_OVERRIDDEN, &OPENS_LATE, NULL, ROGUE_THROTTLE},
     /* a supervisor that hangs with a full queue opens the output when its watchdog ends that */
@@ -410,7 +410,7 @@ static const struct {
     {HAZARD_FALSE_COMMAND, "an old throttle command is the latest one at an engagement", &FORGETS, &PASSING,
      "  - {at_ms: 3000, operator: disengage}\n  - {at_ms: 4000, operator: engage}\n"},
     {HAZARD_NONE, NULL, NULL,
-     &(const stub_t){.gateway = true, .passes = 1u, .only_engaged = true, .open_ms = TRIP_MS + 500},
+     &(const stub_t){.gateway = true, .passes = 1, .only_engaged = true, .open_ms = TRIP_MS + 500},
      "  - {at_ms: 2900, supervisor: fill_queue}\n"
      "  - {at_ms: 3300, operator: disengage}\n  - {at_ms: 3450, operator: engage}\n"},
     {HAZARD_NONE, NULL, NULL, &FORGETS,
@@ -457,13 +457,13 @@ static const struct {
     /* a slew limit leaves angles between the steering and the command */
     {HAZARD_FALSE_COMMAND, NOT_SENT,
      &(const stub_t){.gateway = true,
-                     .passes = 1u,
+                     .passes = 1,
                      .only_engaged = true,
                      .forges_ms = TRIP_MS,
                      .forges_ddeg = 600,
                      .setting = "steering_slew_ddeg_s: 100\n"},
      &(const stub_t){.gateway = true,
-                     .passes = 1u,
+                     .passes = 1,
                      .only_engaged = true,
                      .forges_ms = TRIP_MS,
                      .forges_ddeg = 160,
@@ -472,11 +472,11 @@ static const struct {
     /* a slew limit that goes on from before the hand-over, although the operator steered until the EPS followed */
     {HAZARD_FALSE_COMMAND, NOT_SENT,
      &(const stub_t){.gateway = true,
-                     .passes = 1u,
+                     .passes = 1,
                      .only_engaged = true,
                      .steers_ddeg = 20,
                      .setting = "steering_slew_ddeg_s: 100\n"},
-     &(const stub_t){.gateway = true, .passes = 1u, .only_engaged = true, .setting = "steering_slew_ddeg_s: 100\n"},
+     &(const stub_t){.gateway = true, .passes = 1, .only_engaged = true, .setting = "steering_slew_ddeg_s: 100\n"},
      "  - {at_ms: 1600, operator: disengage}\n"
      "  - {at_ms: 1700, ai: drive, gear: D, throttle_pct: 60, steer_deg: 60}\n"
      "  - {at_ms: 1700, ai: be_stubborn}\n"
@@ -556,9 +556,9 @@ static const struct {
      "  - {at_ms: 3000, vcu: ignore, message: turn_signal_command}\n"
      "  - {at_ms: 3100, ai: ask_autopilot_off}\n"},
     {HAZARD_FALSE_NODE, "the AI side is stalled",
-     &(const stub_t){.gateway = true, .passes = 1u, .setting = "class_ai_bus_off: trip\n"},
+     &(const stub_t){.gateway = true, .passes = 1, .setting = "class_ai_bus_off: trip\n"},
      &(const stub_t){.gateway = true,
-                     .passes = 1u,
+                     .passes = 1,
                      .safe_ms = TRIP_MS + 100,
                      .open_ms = TRIP_MS + 600,
                      .setting = "class_ai_bus_off: trip\n"},
@@ -587,7 +587,7 @@ static const struct {
      "  - {at_ms: 2000, ai: drive, gear: D, throttle_pct: 82}\n"
      "  - {at_ms: 3500, bus: send, side: vehicle, message: throttle_command, bytes: \"01 00 00 00 00 00 00 00\", "
      "every_ms: 30}\n"},
-    {HAZARD_FLOOD, "the vehicle's bus is flooded through the gateway", &(const stub_t){.gateway = true, .passes = 3u},
+    {HAZARD_FLOOD, "the vehicle's bus is flooded through the gateway", &(const stub_t){.gateway = true, .passes = 3},
      NULL, ""},
     /* the stub commands P at once; the vehicle needs a second to stop */
     {HAZARD_PARK, "P comes in motion", &(const stub_t){.safe_ms = TRIP_MS, .setting = "park: at_standstill\n"}, &STAYS,
@@ -595,7 +595,7 @@ static const struct {
     {HAZARD_NONE, NULL, NULL, &(const stub_t){.safe_ms = TRIP_MS + 6000, .setting = "park: at_standstill\n"},
      "  - {at_ms: 2500, ai: drive, gear: D, throttle_pct: 0}\n  - {at_ms: 2500, operator: disengage}\n"},
     {HAZARD_PARK, "P comes in motion",
-     &(const stub_t){.gateway = true, .passes = 1u, .setting = "park: at_standstill\n"}, &PASSING, AI_PARKS},
+     &(const stub_t){.gateway = true, .passes = 1, .setting = "park: at_standstill\n"}, &PASSING, AI_PARKS},
     /* 363h contradicts a 101h of 0 for 1.7 s, of which 101h is silent for 0.1 s or for 1.1 s */
     {HAZARD_PARK, "P comes in motion", &PARKS_LATER, NULL,
      WHEELS_0 "  - {at_ms: 2900, vcu: mute, message: wheel_speed}\n"
@@ -619,7 +619,7 @@ static const struct {
 
 /* Shows: HW-3 */
 void test_whoever_does_nothing_is_a_hazard_and_whoever_reacts_is_none(void) {
-    for (size_t i = 0u; i < sizeof PAIRS / sizeof PAIRS[0]; i++) {
+    for (size_t i = 0; i < sizeof PAIRS / sizeof PAIRS[0]; i++) {
         if (PAIRS[i].wrong != NULL) {
             expect_hazard(PAIRS[i].kind, PAIRS[i].cause, PAIRS[i].wrong, PAIRS[i].steps);
         }
@@ -648,7 +648,7 @@ void test_h2_an_eps_that_takes_no_angle_drops_the_angle_of_the_trip(void) {
     const stub_t returns = {
         .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 500, .holds = true, .hold_ms = TRIP_MS + 400, .hold_ddeg = 0};
 
-    for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const char *const steps = with("  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
                                        "  - {at_ms: 3010, %s}\n"
                                        "  - {at_ms: 3010, ai: drive, gear: D, throttle_pct: 60, steer_deg: -60}\n"
@@ -672,7 +672,7 @@ void test_h2_an_angle_that_was_perhaps_dropped_may_be_taken_anew(void) {
     const stub_t later = {
         .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 500, .holds = true, .hold_ms = TRIP_MS + 1300, .hold_ddeg = -800};
 
-    for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const char *const steps = with("  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
                                        "  - {at_ms: 3010, ai: drive, gear: D, throttle_pct: 60, steer_deg: -60}\n"
                                        "  - {at_ms: 3110, %s}\n"
@@ -692,14 +692,14 @@ void test_h2_the_first_angle_that_is_valid_again_may_be_held(void) {
                             .hold_ms = TRIP_MS + 225,
                             .setting = "status_invalid_frames: 1\n"};
 
-    for (unsigned i = 0; i < 2u; i++) {
+    for (unsigned i = 0; i < 2; i++) {
         const char *const steps = with("  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
                                        "  - {at_ms: 3110, eps: set, field: angle, value: FFFFh, frames: 3}\n"
                                        "  - {at_ms: %u, eps: mute, message: steering_status}\n"
                                        "  - {at_ms: 3145, ai: drive, gear: D, throttle_pct: 60, steer_deg: -60}\n"
                                        "  - {at_ms: 3220, ai: mute, message: steering_command}\n",
                                        muted_ms[i]);
-        expect_another_angle(i == 0u, &returns, steps);
+        expect_another_angle(i == 0, &returns, steps);
     }
 }
 
@@ -708,13 +708,13 @@ static void expect_excused(const char *unexcused, const char *excuse, unsigned t
     const stub_t holds = {
         .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .hold_ddeg = 600, .hold_ms = TRIP_MS + 900};
     const char *const steps[] = {unexcused, excuse};
-    for (unsigned i = 0; i < 2u; i++) {
+    for (unsigned i = 0; i < 2; i++) {
         const char *const all = with("  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
                                      "  - {at_ms: 3200, ai: drive, gear: D, throttle_pct: 60, steer_deg: 80}\n%s"
                                      "  - {at_ms: %u, ai: drive, gear: D, throttle_pct: 60, steer_deg: -20}\n"
                                      "  - {at_ms: 3880, ai: mute, message: steering_command}\n",
                                      steps[i], turned_ms);
-        expect_another_angle(i == 0u, &holds, all);
+        expect_another_angle(i == 0, &holds, all);
     }
 }
 

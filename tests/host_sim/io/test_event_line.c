@@ -42,22 +42,22 @@ void test_what_is_written_comes_back(void) {
     recorded_comes_back((agv_event_t){.kind = AGV_EVENT_STATE, .b = AGV_STATE_INIT, .c = AGV_FAULT_NONE});
     recorded_comes_back(
         (agv_event_t){.kind = AGV_EVENT_STATE, .a = AGV_STATE_ACTIVE, .b = AGV_STATE_TRIPPED, .c = AGV_FAULT_BUS_OFF});
-    for (unsigned fault = 0u; fault < (unsigned)AGV_FAULT_COUNT; fault++) {
-        recorded_comes_back((agv_event_t){.kind = AGV_EVENT_FAULT, .a = (uint8_t)fault, .b = AGV_CLASS_TRIP, .c = 1u});
-        recorded_comes_back((agv_event_t){.kind = AGV_EVENT_FAULT, .a = (uint8_t)fault, .b = AGV_CLASS_WARN, .c = 0u});
+    for (unsigned fault = 0; fault < AGV_FAULT_COUNT; fault++) {
+        recorded_comes_back((agv_event_t){.kind = AGV_EVENT_FAULT, .a = (uint8_t)fault, .b = AGV_CLASS_TRIP, .c = 1});
+        recorded_comes_back((agv_event_t){.kind = AGV_EVENT_FAULT, .a = (uint8_t)fault, .b = AGV_CLASS_WARN, .c = 0});
     }
-    recorded_comes_back((agv_event_t){.kind = AGV_EVENT_OUTPUT, .a = 1u});
-    recorded_comes_back((agv_event_t){.kind = AGV_EVENT_OUTPUT, .a = 0u});
-    recorded_comes_back((agv_event_t){.kind = AGV_EVENT_RESET, .a = 1u});
+    recorded_comes_back((agv_event_t){.kind = AGV_EVENT_OUTPUT, .a = 1});
+    recorded_comes_back((agv_event_t){.kind = AGV_EVENT_OUTPUT, .a = 0});
+    recorded_comes_back((agv_event_t){.kind = AGV_EVENT_RESET, .a = 1});
     recorded_comes_back((agv_event_t){.kind = AGV_EVENT_RESET});
     recorded_comes_back((agv_event_t){.kind = AGV_EVENT_STARTUP, .missing = 0x7FFu});
-    for (unsigned bit = 0u; bit < 11u; bit++) { /* each alone, and all but one */
+    for (unsigned bit = 0; bit < 11; bit++) { /* each alone, and all but one */
         const uint16_t sets[] = {(uint16_t)(1u << bit), (uint16_t)(0x7FFu & ~(1u << bit))};
-        for (size_t i = 0u; i < 2u; i++) {
+        for (size_t i = 0; i < 2; i++) {
             recorded_comes_back((agv_event_t){.kind = AGV_EVENT_RESET, .missing = sets[i]});
             recorded_comes_back((agv_event_t){.kind = AGV_EVENT_STARTUP, .missing = sets[i]});
             recorded_comes_back((agv_event_t){
-                .kind = AGV_EVENT_FAULT, .a = AGV_FAULT_SELF_TEST_FAILED, .c = 1u, .missing = sets[i] & 0x7Fu});
+                .kind = AGV_EVENT_FAULT, .a = AGV_FAULT_SELF_TEST_FAILED, .c = 1, .missing = sets[i] & 0x7Fu});
         }
     }
     const session_event_t led = {.is_led = true, .led_code = -1};
@@ -74,7 +74,7 @@ void test_what_is_no_event_is_none(void) {
         "{\"event\": \"state\", \"to\": \"NOWHERE\"}",
         "{\"event\": \"fault\", \"name\": \"NO_FAULT\", \"class\": \"trip\", \"active\": true}",
         "{\"event\": 7}"};
-    for (size_t i = 0u; i < sizeof lines / sizeof lines[0]; i++) {
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         TEST_ASSERT_FALSE_MESSAGE(reads(lines[i]), lines[i]);
     }
 }

@@ -33,7 +33,7 @@ static const char *lines(void) {
 }
 
 static void write_event(agv_event_t recorded) {
-    const session_event_t event = {.t_ms = 12345678901u, .recorded = recorded};
+    const session_event_t event = {.t_ms = 12345678901, .recorded = recorded};
     events_write(output, &event);
 }
 
@@ -182,10 +182,10 @@ void test_the_summary_is_of_all_starts(void) {
 
 void test_time_goes_on_over_the_wrap_of_the_clock(void) {
     TEST_ASSERT_TRUE(session_observe(session, events_write, output));
-    start(0, UINT32_MAX - 9999u);
-    for (uint32_t t_ms = 1; t_ms <= 10100u; t_ms++) {
-        sim_hal_set_now_ms(&hal, UINT32_MAX - 9999u + t_ms);
-        session_tick(session, t_ms, UINT32_MAX - 9999u + t_ms);
+    start(0, UINT32_MAX - 9999);
+    for (uint32_t t_ms = 1; t_ms <= 10100; t_ms++) {
+        sim_hal_set_now_ms(&hal, UINT32_MAX - 9999 + t_ms);
+        session_tick(session, t_ms, UINT32_MAX - 9999 + t_ms);
     }
     const char *text = lines();
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "{\"t_ms\": 10001, \"event\": \"startup\", "), text);

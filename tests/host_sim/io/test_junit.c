@@ -24,9 +24,9 @@ static const char *written(void) {
 
 void test_a_suite_of_one_that_passed_one_that_failed_and_one_that_could_not_be_run(void) {
     static const char failures[2][16] = {"a < b", "c"};
-    junit_begin(&output, "s", 3u, 1u, 1u);
-    junit_test(&output, "f.yaml", "one", NULL, 0u, 0u);
-    junit_test(&output, "g.yaml", "two", failures[0], 2u, sizeof failures[0]);
+    junit_begin(&output, "s", 3, 1, 1);
+    junit_test(&output, "f.yaml", "one", NULL, 0, 0);
+    junit_test(&output, "g.yaml", "two", failures[0], 2, sizeof failures[0]);
     junit_error(&output, "h.yaml", "h.yaml", "a < b");
     junit_end(&output);
     TEST_ASSERT_EQUAL_STRING("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"

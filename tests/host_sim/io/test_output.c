@@ -52,7 +52,7 @@ void test_a_file_that_is_given_up_leaves_nothing(void) {
 }
 
 void test_what_is_larger_than_the_buffer(void) {
-    static char big[OUTPUT_BUFFER_SIZE + 1u];
+    static char big[OUTPUT_BUFFER_SIZE + 1];
     memset(big, 'x', sizeof big);
     TEST_ASSERT_TRUE(output_open(output, scratch_path("a")));
     write_text("1");

@@ -76,7 +76,7 @@ void test_what_is_saved_is_loaded(void) {
 
 void test_a_store_that_is_full(void) {
     uint8_t record[SIM_STORE_RECORD_SIZE_MAX];
-    for (unsigned i = 0; i < SIM_STORE_RECORDS_MAX + 3u; i++) {
+    for (unsigned i = 0; i < SIM_STORE_RECORDS_MAX + 3; i++) {
         memset(record, (int)(i & 0xFFu), sizeof record);
         TEST_ASSERT_TRUE(sim_store_append(store, record, sizeof record));
     }
@@ -101,7 +101,7 @@ void test_a_store_that_was_cut_off_anywhere_is_not_trusted(void) {
     static char text[SCRATCH_TEXT_MAX];
     (void)snprintf(text, sizeof text, "%s", scratch_read("s"));
     const size_t size = strlen(text);
-    TEST_ASSERT_TRUE(size < SCRATCH_TEXT_MAX - 1u);
+    TEST_ASSERT_TRUE(size < SCRATCH_TEXT_MAX - 1);
     for (size_t cut = 0; cut < size; cut += (cut < 100 || cut > size - 100) ? 1 : 4999) {
         (void)scratch_write("s", text, cut);
         load();
@@ -160,7 +160,7 @@ void test_a_file_of_another_kind_is_not_replaced(void) {
 void test_more_after_the_end_is_damage(void) {
     fill();
     save();
-    static char text[SCRATCH_TEXT_MAX + 16u];
+    static char text[SCRATCH_TEXT_MAX + 16];
     (void)snprintf(text, sizeof text, "%srecord 00\n", scratch_read("s"));
     (void)scratch_write("s", text, strlen(text));
     load();

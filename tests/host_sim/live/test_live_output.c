@@ -30,7 +30,7 @@ static bool put(size_t size) {
     char line[1000];
     TEST_ASSERT_LESS_OR_EQUAL(sizeof line, size);
     memset(line, 'x', size);
-    line[size - 1u] = '\n';
+    line[size - 1] = '\n';
     return live_output_has_room(output) && output_write(&output->lines, line, size);
 }
 
@@ -93,15 +93,15 @@ void test_a_reader_that_does_not_read_is_not_waited_for(void) {
     TEST_ASSERT_EQUAL_INT(0, mkfifo(scratch_path(name), 0600));
     const int reader = open(scratch_path(name), O_RDONLY | O_NONBLOCK);
     TEST_ASSERT_TRUE(live_output_open(output, scratch_path(name)));
-    unsigned taken = 0u;
-    for (unsigned i = 0u; i < 1000u; i++) {
-        taken += put(1000) ? 1u : 0u;
+    unsigned taken = 0;
+    for (unsigned i = 0; i < 1000; i++) {
+        taken += put(1000) ? 1 : 0;
         live_output_pass(output);
     }
-    TEST_ASSERT_LESS_THAN(1000u, taken);
-    TEST_ASSERT_EQUAL_UINT64(1000u - taken, output->lost_lines);
+    TEST_ASSERT_LESS_THAN(1000, taken);
+    TEST_ASSERT_EQUAL_UINT64(1000 - taken, output->lost_lines);
     /* The last line has room whatever was lost. */
-    TEST_ASSERT_LESS_OR_EQUAL(OUTPUT_BUFFER_SIZE - 1000u, output->lines.used);
+    TEST_ASSERT_LESS_OR_EQUAL(OUTPUT_BUFFER_SIZE - 1000, output->lines.used);
     TEST_ASSERT_FALSE(live_output_end(output));
     const char *said = scratch_said();
     TEST_ASSERT_NOT_NULL(strstr(said, " lines were lost because they were not read fast enough\n"));

@@ -61,7 +61,7 @@ static void on_vehicle_sent(void *ctx, vehicle_node_t from, hal_can_side_t side,
 /* The nodes of the vehicle hear each other. */
 static void deliver(size_t first) {
     for (size_t i = first; i < queue_end; i++) {
-        for (int to = 0; to < (int)VEHICLE_NODES; to++) {
+        for (int to = 0; to < VEHICLE_NODES; to++) {
             if (to != (int)queue[i].from) {
                 vehicle_receive(&vehicle, (vehicle_node_t)to, now_us / US_PER_MS, &queue[i].frame);
             }
@@ -239,8 +239,7 @@ static void on_event(void *ctx, const session_event_t *event) {
     (void)ctx;
     TEST_ASSERT_TRUE_MESSAGE(event->t_ms >= latest_event_ms, "the time of events went back");
     latest_event_ms = event->t_ms;
-    if (!event->is_led && event->recorded.kind == (uint8_t)AGV_EVENT_STATE &&
-        event->recorded.b == (uint8_t)AGV_STATE_TRIPPED) {
+    if (!event->is_led && event->recorded.kind == AGV_EVENT_STATE && event->recorded.b == AGV_STATE_TRIPPED) {
         trips++;
     }
 }

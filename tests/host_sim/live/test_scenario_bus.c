@@ -11,7 +11,7 @@
 
 static scenario_t scenario;
 /* The interface is a virtual one. */
-static const scenario_bus_t virtual_bus = {.interfaces = {[HAL_CAN_VEHICLE] = "lo"}, .tolerance_ms = 50u};
+static const scenario_bus_t virtual_bus = {.interfaces = {[HAL_CAN_VEHICLE] = "lo"}, .tolerance_ms = 50};
 
 void setUp(void) {
     scratch_open();
@@ -70,7 +70,7 @@ void test_the_controller_is_played_on_a_virtual_interface_only(void) {
     static const char *const steps[] = {STEP("supervisor: bus_off"), STEP("supervisor: overrun"),
                                         STEP("supervisor: error_passive"), STEP("supervisor: error_active")};
     const scenario_bus_t real = {.interfaces = {[HAL_CAN_VEHICLE] = "no-such-one"}};
-    for (size_t i = 0u; i < sizeof steps / sizeof steps[0]; i++) {
+    for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
         is_left_out(steps[i], NULL);
         TEST_ASSERT_NOT_NULL(scenario_bus_leaves_out(&real, &scenario));
     }
@@ -107,14 +107,14 @@ void test_moments_are_widened(void) {
                         "  startup: [{missing: [messages], at_ms: 700}]\n");
     scenario_bus_tolerate(&virtual_bus, &scenario);
     const scenario_expect_t *expect = &scenario.expect;
-    is_window(expect->states.items[0].at_ms, 0u, 50u);
-    is_window(expect->states.items[1].at_ms, 460u, 563u);
-    is_window(expect->frames.items[0].at_ms, 50u, 250u);
-    is_window(expect->outputs.items[0].at_ms, 450u, 550u);
-    is_window(expect->faults.items[0].raised_ms, 250u, 350u);
-    is_window(expect->faults.items[0].ended_ms, 350u, 451u);
-    is_window(expect->resets.items[0].at_ms, 550u, 650u);
-    is_window(expect->startups.items[0].at_ms, 650u, 750u);
+    is_window(expect->states.items[0].at_ms, 0, 50);
+    is_window(expect->states.items[1].at_ms, 460, 563);
+    is_window(expect->frames.items[0].at_ms, 50, 250);
+    is_window(expect->outputs.items[0].at_ms, 450, 550);
+    is_window(expect->faults.items[0].raised_ms, 250, 350);
+    is_window(expect->faults.items[0].ended_ms, 350, 451);
+    is_window(expect->resets.items[0].at_ms, 550, 650);
+    is_window(expect->startups.items[0].at_ms, 650, 750);
 }
 
 /* The event of another program is read after the frames that come with it. */
@@ -123,18 +123,18 @@ void test_moments_after_an_event_are_widened_to_before_it(void) {
                         "  frames: [{id: 168h, after: trip, within: 2}, {id: 43Fh, after: trip, within: [70, 90]}]\n");
     scenario_bus_tolerate(&virtual_bus, &scenario);
     const scenario_expect_t *expect = &scenario.expect;
-    is_window(expect->states.items[1].at_ms, 0u, 110u);
-    TEST_ASSERT_EQUAL_UINT32(10u, expect->states.items[1].at_ms.early);
-    is_window(expect->frames.items[0].at_ms, 0u, 52u);
-    TEST_ASSERT_EQUAL_UINT32(50u, expect->frames.items[0].at_ms.early);
-    is_window(expect->frames.items[1].at_ms, 20u, 140u);
-    TEST_ASSERT_EQUAL_UINT32(0u, expect->frames.items[1].at_ms.early);
+    is_window(expect->states.items[1].at_ms, 0, 110);
+    TEST_ASSERT_EQUAL_UINT32(10, expect->states.items[1].at_ms.early);
+    is_window(expect->frames.items[0].at_ms, 0, 52);
+    TEST_ASSERT_EQUAL_UINT32(50, expect->frames.items[0].at_ms.early);
+    is_window(expect->frames.items[1].at_ms, 20, 140);
+    TEST_ASSERT_EQUAL_UINT32(0, expect->frames.items[1].at_ms.early);
 }
 
 void test_what_lasts_after_an_event_is_narrowed_on_both_sides(void) {
     read_scenario(BEGIN "expect:\n  states: any\n  never: [{id: 168h, after: trip, within: 200}]\n");
     scenario_bus_tolerate(&virtual_bus, &scenario);
-    is_window(scenario.expect.never.items[0].at_ms, 50u, 150u);
+    is_window(scenario.expect.never.items[0].at_ms, 50, 150);
 }
 
 void test_what_lasts_is_narrowed_but_for_the_ends_of_the_run(void) {
@@ -144,35 +144,35 @@ void test_what_lasts_is_narrowed_but_for_the_ends_of_the_run(void) {
               "  frames: [{id: 43Fh, at_ms: [100, 900], every_ms: 100}]\n");
     scenario_bus_tolerate(&virtual_bus, &scenario);
     const scenario_expect_t *expect = &scenario.expect;
-    is_window(expect->leds.items[0].at_ms, 0u, 1000u);
-    is_window(expect->leds.items[1].at_ms, 150u, 250u);
-    is_window(expect->leds.items[2].at_ms, UINT32_MAX, 0u); /* nothing is left of it */
-    is_window(expect->never.items[0].at_ms, 650u, 750u);
-    TEST_ASSERT_EQUAL_UINT32(0u, expect->never.items[1].at_ms.from);
-    TEST_ASSERT_GREATER_OR_EQUAL_UINT32(1000u, expect->never.items[1].at_ms.to);
-    is_window(expect->frames.items[0].at_ms, 150u, 850u);
-    TEST_ASSERT_EQUAL_UINT32(52u, expect->frames.items[0].jitter_ms);
+    is_window(expect->leds.items[0].at_ms, 0, 1000);
+    is_window(expect->leds.items[1].at_ms, 150, 250);
+    is_window(expect->leds.items[2].at_ms, UINT32_MAX, 0); /* nothing is left of it */
+    is_window(expect->never.items[0].at_ms, 650, 750);
+    TEST_ASSERT_EQUAL_UINT32(0, expect->never.items[1].at_ms.from);
+    TEST_ASSERT_GREATER_OR_EQUAL_UINT32(1000, expect->never.items[1].at_ms.to);
+    is_window(expect->frames.items[0].at_ms, 150, 850);
+    TEST_ASSERT_EQUAL_UINT32(52, expect->frames.items[0].jitter_ms);
 }
 
 void test_counts_hold_in_the_time_as_it_stands(void) {
     read_scenario(BEGIN "expect:\n  states: []\n  frames: [{id: 168h, at_ms: [100, 200], count: [3, 4]}]\n");
     scenario_bus_tolerate(&virtual_bus, &scenario);
-    is_window(scenario.expect.frames.items[0].at_ms, 100u, 200u);
-    is_window(scenario.expect.frames.items[0].count, 3u, 4u);
+    is_window(scenario.expect.frames.items[0].at_ms, 100, 200);
+    is_window(scenario.expect.frames.items[0].count, 3, 4);
 }
 
 void test_of_another_program_more_is_left_out_and_its_counters_are_not_judged(void) {
-    const scenario_bus_t outside = {.interfaces = {[HAL_CAN_VEHICLE] = "lo"}, .tolerance_ms = 50u, .command = "true"};
+    const scenario_bus_t outside = {.interfaces = {[HAL_CAN_VEHICLE] = "lo"}, .tolerance_ms = 50, .command = "true"};
     static const char *const steps[] = {STEP("supervisor: bus_off"), STEP("supervisor: overrun"),
                                         STEP("supervisor: error_passive"), STEP("supervisor: hang, for_ms: 20"),
                                         STEP("supervisor: restart, cause: power-on")};
-    for (size_t i = 0u; i < sizeof steps / sizeof steps[0]; i++) {
+    for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
         read_scenario(steps[i]);
         TEST_ASSERT_NULL_MESSAGE(scenario_bus_leaves_out(&virtual_bus, &scenario), steps[i]);
         TEST_ASSERT_NOT_NULL_MESSAGE(scenario_bus_leaves_out(&outside, &scenario), steps[i]);
     }
     read_scenario(BEGIN NO_STATES "  counters_at_end: {sent: 0}\n");
-    TEST_ASSERT_EQUAL_size_t(1u, scenario.expect.counters.count);
+    TEST_ASSERT_EQUAL_size_t(1, scenario.expect.counters.count);
     scenario_bus_tolerate(&outside, &scenario);
-    TEST_ASSERT_EQUAL_size_t(0u, scenario.expect.counters.count);
+    TEST_ASSERT_EQUAL_size_t(0, scenario.expect.counters.count);
 }

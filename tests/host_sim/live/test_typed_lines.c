@@ -67,7 +67,7 @@ void test_a_file_that_cannot_be_read_has_ended(void) {
 }
 
 void test_a_line_that_is_too_long_is_passed_over(void) {
-    char most[TYPED_LINE_MAX + 1u];
+    char most[TYPED_LINE_MAX + 1];
     memset(most, 'x', sizeof most);
     most[TYPED_LINE_MAX] = '\0';
     type(most);

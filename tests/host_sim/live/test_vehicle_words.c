@@ -20,7 +20,7 @@ void setUp(void) {
 
 /* It is refused with one line, which begins with what was typed. */
 static void refused_when_typed(const char *line, const char *said) {
-    char expected[2u * VEHICLE_WORDS_MAX];
+    char expected[2 * VEHICLE_WORDS_MAX];
     (void)snprintf(expected, sizeof expected, "host_sim: '%s': %s\n", line, said);
     TEST_ASSERT_FALSE_MESSAGE(vehicle_words_typed(line, &config, &words), line);
     TEST_ASSERT_EQUAL_STRING(expected, scratch_said());
@@ -56,7 +56,7 @@ void test_what_follows_fault_is_a_step_with_a_time(void) {
 void test_values_with_blanks_stand_in_quotes(void) {
     static const char *const lines[] = {"bus send id=7FFh bytes=\"01 0A\"", "bus send id=7FFh 'bytes=01 0A'",
                                         " \tbus  send\tid='7FFh' bytes='01 0A' "};
-    for (size_t i = 0u; i < sizeof lines / sizeof lines[0]; i++) {
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         TEST_ASSERT_TRUE_MESSAGE(vehicle_words_typed(lines[i], &config, &words), lines[i]);
         TEST_ASSERT_EQUAL_HEX32(0x7FF, words.step.vehicle.frame.id);
         TEST_ASSERT_EQUAL(2, words.step.vehicle.frame.length);
@@ -159,7 +159,7 @@ void test_what_makes_no_sense_in_the_parameters_of_a_fault_is_one_line(void) {
         {"bus send message=gear_command kind=fd bytes=08", "kind: fd is for the simulated bus only"},
         {"bus send message=gear_command kind=error bytes=08", "kind: error is only for deliver"},
     };
-    for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         refused_when_typed(rows[i][0], rows[i][1]);
     }
 }
@@ -196,12 +196,12 @@ void test_what_needs_a_simulated_bus_is_refused(void) {
 }
 
 void test_a_line_may_be_long_but_not_too_long(void) {
-    char line[VEHICLE_WORDS_MAX + 1u];
+    char line[VEHICLE_WORDS_MAX + 1];
     memset(line, ' ', sizeof line);
     memcpy(line, "ai stop", strlen("ai stop"));
     line[VEHICLE_WORDS_MAX] = '\0';
     TEST_ASSERT_FALSE(vehicle_words_typed(line, &config, &words));
     TEST_ASSERT_NOT_NULL(strstr(scratch_said(), ": longer than 255 characters\n"));
-    line[VEHICLE_WORDS_MAX - 1u] = '\0';
+    line[VEHICLE_WORDS_MAX - 1] = '\0';
     TEST_ASSERT_TRUE(vehicle_words_typed(line, &config, &words));
 }

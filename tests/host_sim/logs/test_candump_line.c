@@ -99,7 +99,7 @@ void test_the_longest_can_fd_frame(void) {
     for (unsigned i = 0; i < 64; i++) {
         strcat(text, "A5");
     }
-    is_frame(&(row_t){&text[sizeof F - 1u], 0x1FFFFFFF, HAL_CAN_FD | HAL_CAN_EXTENDED, 64,
+    is_frame(&(row_t){&text[sizeof F - 1], 0x1FFFFFFF, HAL_CAN_FD | HAL_CAN_EXTENDED, 64,
                       "\xA5\xA5\xA5\xA5\xA5\xA5\xA5\xA5"});
     strcat(text, "00");
     parse_bad(text, "longer than 64 bytes");
@@ -183,16 +183,16 @@ void test_what_is_no_line(void) {
 
 void test_a_nul_byte_is_no_end(void) {
     const char line[] = "(1.000000) c 43F#00\0\n";
-    TEST_ASSERT_NOT_NULL(candump_parse(line, sizeof line - 2u, &record));
+    TEST_ASSERT_NOT_NULL(candump_parse(line, sizeof line - 2, &record));
 }
 
 static void assert_written(const char *expected, uint64_t stamp_us, const char *interface, hal_can_frame_t frame) {
-    char line[CANDUMP_WRITE_MAX + 1u];
+    char line[CANDUMP_WRITE_MAX + 1];
     size_t length = candump_write(line, stamp_us, interface, &frame);
     line[length] = '\0';
     TEST_ASSERT_TRUE(length < CANDUMP_WRITE_MAX);
     TEST_ASSERT_EQUAL_STRING(expected, line);
-    TEST_ASSERT_NULL(candump_parse(line, length - 1u, &record));
+    TEST_ASSERT_NULL(candump_parse(line, length - 1, &record));
     TEST_ASSERT_EQUAL_UINT64(stamp_us, record.stamp_us);
     TEST_ASSERT_EQUAL_HEX32(frame.id, record.frame.id);
     TEST_ASSERT_EQUAL_UINT8(frame.length, record.frame.length);
@@ -200,10 +200,10 @@ static void assert_written(const char *expected, uint64_t stamp_us, const char *
 }
 
 void test_what_is_written_is_read_back(void) {
-    assert_written("(1700000000.000001) can0 43F#000000007000000A\n", 1700000000000001u, "can0",
+    assert_written("(1700000000.000001) can0 43F#000000007000000A\n", 1700000000000001, "can0",
                    (hal_can_frame_t){.id = 0x43F, .length = 8, .data = {0, 0, 0, 0, 0x70, 0, 0, 0x0A}});
     assert_written("(0000000000.000000) c 000#\n", 0, "c", (hal_can_frame_t){.id = 0});
-    assert_written("(999999999999.999999) 123456789012345 1FFFFFFF#FFFFFFFFFFFFFFFF\n", 999999999999999999u,
+    assert_written("(999999999999.999999) 123456789012345 1FFFFFFF#FFFFFFFFFFFFFFFF\n", 999999999999999999,
                    "123456789012345",
                    (hal_can_frame_t){.id = 0x1FFFFFFF,
                                      .flags = HAL_CAN_EXTENDED,

@@ -303,7 +303,7 @@ void test_compressed_data_that_is_cut_off_or_damaged(void) {
         open_bytes(packed, cut);
         expect_failure("log: the gzip file is cut off");
     }
-    packed[size - 5] ^= 1u; /* of the checksum */
+    packed[size - 5] ^= 1; /* of the checksum */
     open_bytes(packed, size);
     expect_failure("log: the gzip data is damaged");
 }
@@ -312,7 +312,7 @@ void test_compressed_data_that_is_cut_off_or_damaged(void) {
 void test_a_log_that_grows_a_thousandfold(void) {
     char *text = malloc(1u << 20);
     memset(text, '\n', 1u << 20);
-    text[(1u << 20) - 1u] = '\0';
+    text[(1u << 20) - 1] = '\0';
     unsigned char *packed = malloc(1u << 19);
     size_t size = 0;
     for (size_t i = 0; i < 15; i++) {

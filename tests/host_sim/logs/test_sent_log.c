@@ -68,7 +68,7 @@ void test_nothing_is_said_when_nothing_waits(void) {
 }
 
 void test_waiting_is_bounded(void) {
-    for (size_t i = 0; i < SENT_LOG_WAITING_MAX + 2u; i++) {
+    for (size_t i = 0; i < SENT_LOG_WAITING_MAX + 2; i++) {
         add(HAL_CAN_VEHICLE, 0x100, i);
     }
     TEST_ASSERT_NOT_NULL(strstr(scratch_said(), "logged as can0"));

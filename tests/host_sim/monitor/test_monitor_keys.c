@@ -10,7 +10,7 @@ static monitor_ui_t *ui;
 void setUp(void) {
     agv_config_defaults(&settings);
     begin(false, false);
-    ui = calloc(1u, sizeof *ui);
+    ui = calloc(1, sizeof *ui);
     ui->monitor = monitor;
     ui->log_lines = 4;
 }
@@ -117,5 +117,5 @@ void test_a_long_line_is_cut(void) {
     for (int i = 0; i < 500; i++) {
         press("x");
     }
-    TEST_ASSERT_EQUAL(MONITOR_TYPED_SIZE - 1u, strlen(ui->page.typed));
+    TEST_ASSERT_EQUAL(MONITOR_TYPED_SIZE - 1, strlen(ui->page.typed));
 }

@@ -44,8 +44,8 @@ void test_gaps_and_their_reset(void) {
 /* 363h every 10 ms, with a mode, up to a time. */
 static void report_mode(unsigned from_ms, unsigned to_ms, const char *mode) {
     char data[17];
-    for (unsigned ms = from_ms; ms <= to_ms; ms += 10u) {
-        (void)snprintf(data, sizeof data, "000000000000%s%02X", mode, (ms / 10u) % 256u);
+    for (unsigned ms = from_ms; ms <= to_ms; ms += 10) {
+        (void)snprintf(data, sizeof data, "000000000000%s%02X", mode, (ms / 10) % 256);
         frame(VEHICLE, ms, 0x363, data);
     }
 }
@@ -71,7 +71,7 @@ void test_in_manual_no_command_is_late(void) {
     frame(VEHICLE, 100, 0x075, "0000000000000000");
     frame(VEHICLE, 100, 0x065, "2823000000000000");
     report_mode(100, 2000, "40");
-    for (size_t i = 0u; i < 3u; i++) {
+    for (size_t i = 0; i < 3; i++) {
         TEST_ASSERT_TRUE(row_of(VEHICLE, commands[i])->is_silent);
         TEST_ASSERT_FALSE(monitor_is_late(row_of(VEHICLE, commands[i])));
     }
@@ -152,12 +152,12 @@ void test_a_short_lateness_is_shown_for_half_a_second_at_least(void) {
     frame(VEHICLE, 170, 0x363, MANUAL);
     TEST_ASSERT_EQUAL(1, said("363h vehicle_status late"));
     TEST_ASSERT_EQUAL(1, said("363h vehicle_status back after 70 ms"));
-    for (unsigned ms = 180u; ms <= 600u; ms += 10u) {
+    for (unsigned ms = 180; ms <= 600; ms += 10) {
         frame(VEHICLE, ms, 0x363, MANUAL);
     }
     TEST_ASSERT_TRUE(monitor_is_late(row_of(VEHICLE, 0x363)));
     TEST_ASSERT_EQUAL(70000, monitor_age_us(monitor, row_of(VEHICLE, 0x363)));
-    for (unsigned ms = 610u; ms <= 1010u; ms += 10u) {
+    for (unsigned ms = 610; ms <= 1010; ms += 10) {
         frame(VEHICLE, ms, 0x363, MANUAL);
     }
     TEST_ASSERT_FALSE(monitor_is_late(row_of(VEHICLE, 0x363)));
@@ -172,8 +172,8 @@ void test_what_was_never_heard_is_not_late(void) {
 
 void test_a_counter_that_stands_still(void) {
     char data[17];
-    for (unsigned ms = 0u; ms <= 100u; ms += 10u) {
-        (void)snprintf(data, sizeof data, "00000000000040%02X", (ms < 40u) ? ms / 10u : 4u);
+    for (unsigned ms = 0; ms <= 100; ms += 10) {
+        (void)snprintf(data, sizeof data, "00000000000040%02X", (ms < 40) ? ms / 10 : 4);
         frame(VEHICLE, ms, 0x363, data);
     }
     TEST_ASSERT_TRUE(row_of(VEHICLE, 0x363)->is_stuck); /* unchanged since 40 ms, the deadline is 50 ms */
@@ -196,9 +196,9 @@ void test_words_that_change_are_listed_numbers_are_not(void) {
 }
 
 void test_two_senders_that_disagree_do_not_fill_the_log(void) {
-    for (unsigned ms = 0u; ms < 1000u; ms += 20u) {
+    for (unsigned ms = 0; ms < 1000; ms += 20) {
         frame(VEHICLE, ms, 0x168, "0100000000000000");
-        frame(VEHICLE, ms + 10u, 0x168, "0800000000000000");
+        frame(VEHICLE, ms + 10, 0x168, "0800000000000000");
     }
     TEST_ASSERT_LESS_THAN(5, said("168h gear: "));
     TEST_ASSERT_EQUAL(1, said("168h changes more than 4 times a second: not listed"));
@@ -240,18 +240,18 @@ void test_other_identifiers(void) {
 
 void test_frames_of_another_form_count_as_no_message(void) {
     const hal_can_frame_t forms[] = {
-        {.id = 0x168u, .length = 7u},
-        {.id = 0x168u, .length = 8u, .flags = HAL_CAN_REMOTE},
-        {.id = 0x168u, .length = 8u, .flags = HAL_CAN_FD},
+        {.id = 0x168u, .length = 7},
+        {.id = 0x168u, .length = 8, .flags = HAL_CAN_REMOTE},
+        {.id = 0x168u, .length = 8, .flags = HAL_CAN_FD},
     };
-    for (size_t i = 0u; i < 3u; i++) {
-        monitor_frame(monitor, HAL_CAN_VEHICLE, &forms[i], 1000u * (i + 1u));
+    for (size_t i = 0; i < 3; i++) {
+        monitor_frame(monitor, HAL_CAN_VEHICLE, &forms[i], 1000 * (i + 1));
     }
     TEST_ASSERT_EQUAL(0, row_of(VEHICLE, 0x168)->count);
     TEST_ASSERT_EQUAL(3, monitor->rejected);
     TEST_ASSERT_EQUAL(1, said("168h in another form"));
-    const hal_can_frame_t extended = {.id = 0x168u, .length = 8u, .flags = HAL_CAN_EXTENDED};
-    monitor_frame(monitor, HAL_CAN_VEHICLE, &extended, 5000u);
+    const hal_can_frame_t extended = {.id = 0x168u, .length = 8, .flags = HAL_CAN_EXTENDED};
+    monitor_frame(monitor, HAL_CAN_VEHICLE, &extended, 5000);
     TEST_ASSERT_EQUAL(1, said("00000168h received, no message of the protocol"));
 }
 
@@ -277,7 +277,7 @@ void test_what_a_gateway_repeats_on_the_ai_side_is_nothing_unknown(void) {
 }
 
 void test_rate_over_the_last_second(void) {
-    for (unsigned ms = 0u; ms <= 2400u; ms += 10u) {
+    for (unsigned ms = 0; ms <= 2400; ms += 10) {
         frame(VEHICLE, ms, 0x363, MANUAL);
     }
     const monitor_row_t *row = row_of(VEHICLE, 0x363);
@@ -287,15 +287,15 @@ void test_rate_over_the_last_second(void) {
 }
 
 void test_links_and_losses(void) {
-    monitor_link(monitor, HAL_CAN_VEHICLE, false, 1000u);
+    monitor_link(monitor, HAL_CAN_VEHICLE, false, 1000);
     TEST_ASSERT_EQUAL(0, monitor_log_length(&monitor->log));
-    monitor_link(monitor, HAL_CAN_VEHICLE, true, 2000u);
-    monitor_link(monitor, HAL_CAN_VEHICLE, true, 3000u);
-    monitor_link(monitor, HAL_CAN_VEHICLE, false, 4000u);
+    monitor_link(monitor, HAL_CAN_VEHICLE, true, 2000);
+    monitor_link(monitor, HAL_CAN_VEHICLE, true, 3000);
+    monitor_link(monitor, HAL_CAN_VEHICLE, false, 4000);
     TEST_ASSERT_EQUAL(1, said("can0: the interface is down"));
     TEST_ASSERT_EQUAL(1, said("can0: the interface is up again"));
-    for (unsigned i = 0u; i < 10u; i++) {
-        monitor_lost(monitor, HAL_CAN_VEHICLE, 5u, 10000u + i);
+    for (unsigned i = 0; i < 10; i++) {
+        monitor_lost(monitor, HAL_CAN_VEHICLE, 5, 10000 + i);
     }
     TEST_ASSERT_EQUAL(50, monitor->lost);
     TEST_ASSERT_EQUAL(1, said("can0: frames lost"));
@@ -303,7 +303,7 @@ void test_links_and_losses(void) {
 
 void test_the_log_keeps_the_newest(void) {
     char text[20];
-    for (unsigned i = 0u; i < MONITOR_LOG_ENTRIES + 10u; i++) {
+    for (unsigned i = 0; i < MONITOR_LOG_ENTRIES + 10; i++) {
         (void)snprintf(text, sizeof text, "entry %u", i);
         monitor_note(monitor, MONITOR_QUIET, "test", text);
     }

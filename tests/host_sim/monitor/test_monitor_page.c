@@ -13,7 +13,7 @@ static monitor_page_t page;
 void setUp(void) {
     TEST_ASSERT_NOT_NULL(setlocale(LC_CTYPE, "C.UTF-8"));
     agv_config_defaults(&settings);
-    view = calloc(1u, sizeof *view);
+    view = calloc(1, sizeof *view);
     page = (monitor_page_t){.title = "monitor"};
     begin(false, false);
 }
@@ -150,7 +150,7 @@ void test_a_gateway_has_room_on_80_by_24(void) {
 
 void test_the_log_and_its_scrolling(void) {
     char text[20];
-    for (unsigned i = 1u; i <= 20u; i++) {
+    for (unsigned i = 1; i <= 20; i++) {
         (void)snprintf(text, sizeof text, "entry %u.", i);
         monitor_note(monitor, MONITOR_QUIET, "test", text);
     }
@@ -158,7 +158,7 @@ void test_the_log_and_its_scrolling(void) {
     draw(80, 24);
     TEST_ASSERT_EQUAL_STRING("      0.000  test       entry 17.", line(19));
     TEST_ASSERT_EQUAL_STRING("      0.000  test       entry 20.", line(22));
-    page.scrolled = 10u;
+    page.scrolled = 10;
     draw(80, 24);
     TEST_ASSERT_EQUAL_STRING("      0.000  test       entry 10.", line(22));
     TEST_ASSERT_EQUAL_STRING("transitions 10 newer below", line(18));

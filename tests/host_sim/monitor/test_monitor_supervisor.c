@@ -25,8 +25,8 @@ static void default_status(unsigned ms, unsigned state, unsigned reason, unsigne
 /* Healthy nodes in manual mode, gear P, at standstill. */
 static void healthy(unsigned from_ms, unsigned to_ms, bool with_ai) {
     char data[17];
-    for (unsigned ms = from_ms; ms < to_ms; ms += 10u) {
-        const unsigned counter = (ms / 10u) & 0xFFu;
+    for (unsigned ms = from_ms; ms < to_ms; ms += 10) {
+        const unsigned counter = (ms / 10) & 0xFFu;
         (void)snprintf(data, sizeof data, "00000000000040%02X", counter);
         frame(VEHICLE, ms, 0x363, data);
         (void)snprintf(data, sizeof data, "%02X64282300000000", counter);
@@ -37,7 +37,7 @@ static void healthy(unsigned from_ms, unsigned to_ms, bool with_ai) {
         frame(VEHICLE, ms, 0x267, "0000000000000000");
         frame(VEHICLE, ms, 0x101, "0000000000000000");
         (void)snprintf(data, sizeof data, "00000000000000%02X", counter);
-        if (with_ai && (ms % 100u == 0u)) {
+        if (with_ai && (ms % 100 == 0)) {
             frame(VEHICLE, ms, 0x43F, data);
             frame(VEHICLE, ms, 0x168, "0800000000000000");
             frame(VEHICLE, ms, 0x075, "0000000000000000");
@@ -151,7 +151,7 @@ void test_the_program_says_what_its_supervisor_does(void) {
     const session_event_t event = {
         .recorded = {.kind = AGV_EVENT_STATE, .a = AGV_STATE_STANDBY, .b = AGV_STATE_ACTIVE, .c = AGV_FAULT_NONE}};
     const monitor_supervisor_t told = {.state = AGV_STATE_ACTIVE, .first_reason = AGV_FAULT_NONE, .has_led = true};
-    monitor_event(monitor, &event, 1000u);
+    monitor_event(monitor, &event, 1000);
     monitor_told(monitor, &told);
     wait_until(5000);
     TEST_ASSERT_EQUAL(MONITOR_OWNER, monitor->supervisor.source);
@@ -165,14 +165,14 @@ void test_a_fault_that_changes_too_often_is_said_once(void) {
     const monitor_config_t config = {.config = &settings, .interfaces = {"can0", NULL}, .owned = true};
     monitor = monitor_new(&config);
     session_event_t event = {.recorded = {.kind = AGV_EVENT_FAULT, .a = AGV_FAULT_EPS_TEMP_ABOVE_110, .c = 1}};
-    monitor_event(monitor, &event, 1000u);
+    monitor_event(monitor, &event, 1000);
     for (uint64_t i = 0; i < 10; i++) {
         event.is_left_out = true;
-        monitor_event(monitor, &event, 2000u + i);
+        monitor_event(monitor, &event, 2000 + i);
     }
     event.is_left_out = false;
     event.recorded.c = 0;
-    monitor_event(monitor, &event, 3000u);
+    monitor_event(monitor, &event, 3000);
     TEST_ASSERT_EQUAL(1, said("fault EPS_TEMP_ABOVE_110 changes more than 4 times a second: not listed"));
     TEST_ASSERT_EQUAL(1, said("fault EPS_TEMP_ABOVE_110 (warn) has ended"));
     TEST_ASSERT_EQUAL(3, monitor_log_length(&monitor->log));

@@ -33,8 +33,8 @@ void tearDown(void) {
 }
 
 static const char *text(void) {
-    why_end(why, 1000000u);
-    series_end(series, 1000000u);
+    why_end(why, 1000000);
+    series_end(series, 1000000);
     report_page_write(output, &page, why, series);
     TEST_ASSERT_TRUE(output_commit(output));
     return scratch_read("page.html");
@@ -91,14 +91,14 @@ void test_settings_that_differ_stand_in_it(void) {
 }
 
 void test_the_frames_of_a_trip_are_decoded(void) {
-    const hal_can_frame_t frame = {.id = 0x0A3, .length = 8u, .data = {8}};
+    const hal_can_frame_t frame = {.id = 0x0A3, .length = 8, .data = {8}};
     const session_event_t trip = {.t_ms = 500,
                                   .recorded = {.kind = AGV_EVENT_STATE,
                                                .a = (uint8_t)AGV_STATE_ACTIVE,
                                                .b = (uint8_t)AGV_STATE_TRIPPED,
                                                .c = (uint8_t)AGV_FAULT_GEAR_STATUS_TIMEOUT}};
-    why_frame(why, HAL_CAN_VEHICLE, &frame, 300000u);
-    series_frame(series, HAL_CAN_VEHICLE, &frame, 300000u);
+    why_frame(why, HAL_CAN_VEHICLE, &frame, 300000);
+    series_frame(series, HAL_CAN_VEHICLE, &frame, 300000);
     why_event(why, &trip);
     series_event(series, &trip);
     has(text(), "[300000,0,false,\"0A3\",\"08 00 00 00 00 00 00 00\",\"gear_status\",\"gear P\",true]");

@@ -16,19 +16,19 @@ static sentence_t sentence;
 void setUp(void) {
     agv_config_defaults(&config);
     page = (report_page_t){.name = "my.log", .config = &config};
-    trip = (why_trip_t){.t_us = 62109000u,
+    trip = (why_trip_t){.t_us = 62109000,
                         .reason = AGV_FAULT_STEERING_COMMAND_TIMEOUT,
                         .kind = WHY_SILENCE,
                         .message = AGV_MSG_STEERING_COMMAND,
                         .id = 0x065,
-                        .cause_us = 62009000u,
-                        .last_good_us = 61984000u,
-                        .next_us = 63002000u,
+                        .cause_us = 62009000,
+                        .last_good_us = 61984000,
+                        .next_us = 63002000,
                         .limit = 125,
                         .unit = "ms",
-                        .first_safe_us = 62109300u,
-                        .confirmed_us = 62420000u,
-                        .stopped_us = 62900000u};
+                        .first_safe_us = 62109300,
+                        .confirmed_us = 62420000,
+                        .stopped_us = 62900000};
 }
 
 static void say(void) {
@@ -68,7 +68,7 @@ void test_a_message_that_never_came(void) {
 
 void test_every_silence_of_a_message_that_never_came_has_words(void) {
     trip.last_good_us = WHY_NEVER;
-    for (uint32_t fault = 0; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
+    for (uint32_t fault = 0; fault < AGV_FAULT_COUNT; fault++) {
         if (why_row((agv_fault_t)fault)->kind == WHY_SILENCE) {
             trip.reason = (agv_fault_t)fault;
             say();
@@ -80,7 +80,7 @@ void test_every_silence_of_a_message_that_never_came_has_words(void) {
 static void refuse(hal_can_frame_t frame) {
     trip.was_heard = true;
     trip.next_us = WHY_NEVER;
-    trip.refused = (why_refused_t){.count = 5, .first = {.t_us = 62009000u, .frame = frame}};
+    trip.refused = (why_refused_t){.count = 5, .first = {.t_us = 62009000, .frame = frame}};
 }
 
 void test_a_message_in_another_form(void) {
@@ -117,7 +117,7 @@ void test_a_vehicle_that_parks_at_standstill(void) {
 }
 
 void test_a_message_that_came_at_a_time_that_is_not_known(void) {
-    trip.cause_us = 61984000u;
+    trip.cause_us = 61984000;
     trip.last_good_us = WHY_NEVER;
     trip.next_us = WHY_NEVER;
     trip.was_heard = true;
@@ -169,11 +169,11 @@ void test_a_bit_that_trips_at_once_trips_with_its_frame(void) {
     trip.reason = AGV_FAULT_EPS_MOTOR_ENCODER;
     trip.message = AGV_MSG_EPS_STATUS;
     trip.id = 0x167;
-    trip.cause_us = trip.t_us + 200u; /* the event says the millisecond, the frame the microsecond */
+    trip.cause_us = trip.t_us + 200; /* the event says the millisecond, the frame the microsecond */
     trip.limit = WHY_NO_LIMIT;
     trip.unit = NULL;
     say();
-    TEST_ASSERT_EQUAL_UINT64(62109200u, sentence_trip_us(&trip));
+    TEST_ASSERT_EQUAL_UINT64(62109200, sentence_trip_us(&trip));
     is(sentence.cause, "The cause began at 62.109 s, as eps_status (167h) shows.");
     has(sentence.action, " 0.1 ms later it began to send");
     trip.first_safe_us = trip.cause_us;
@@ -233,16 +233,16 @@ void test_the_safety_output(void) {
     has(sentence.action, "The safety output was opened at once.");
     sentence_trip(&sentence, &page, &trip, 0);
     has(sentence.action, "The safety output was open already.");
-    sentence_trip(&sentence, &page, &trip, trip.t_us + (500u * MS));
+    sentence_trip(&sentence, &page, &trip, trip.t_us + (500 * MS));
     has(sentence.action, "The safety output was opened 500 ms after the trip.");
 }
 
 void test_every_fault_has_words_of_its_own(void) {
-    for (uint32_t fault = 0; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
+    for (uint32_t fault = 0; fault < AGV_FAULT_COUNT; fault++) {
         const char *phrase = sentence_phrase((agv_fault_t)fault);
         TEST_ASSERT_NOT_NULL(phrase);
         TEST_ASSERT_GREATER_THAN(10, strlen(phrase));
-        TEST_ASSERT_NOT_EQUAL('.', phrase[strlen(phrase) - 1u]);
+        TEST_ASSERT_NOT_EQUAL('.', phrase[strlen(phrase) - 1]);
         for (uint32_t other = 0; other < fault; other++) {
             TEST_ASSERT_TRUE(strcmp(phrase, sentence_phrase((agv_fault_t)other)) != 0);
         }
@@ -251,10 +251,10 @@ void test_every_fault_has_words_of_its_own(void) {
 }
 
 void test_every_missing_condition_has_words(void) {
-    for (unsigned bit = 0; (AGV_MISSING_ALL & (1u << bit)) != 0u; bit++) {
+    for (unsigned bit = 0; (AGV_MISSING_ALL & (1u << bit)) != 0; bit++) {
         TEST_ASSERT_GREATER_THAN(5, strlen(sentence_missing(bit)));
     }
-    TEST_ASSERT_EQUAL_STRING("", sentence_missing(31u));
+    TEST_ASSERT_EQUAL_STRING("", sentence_missing(31));
 }
 
 /** A run in one state after the other. */
@@ -271,13 +271,13 @@ static why_t *run(agv_state_t second, uint64_t from_ms) {
                                                .c = (uint8_t)AGV_FAULT_NONE}};
         why_event(why, &event);
     }
-    why_end(why, 86000u * MS);
+    why_end(why, 86000 * MS);
     return why;
 }
 
 void test_what_was_not_supervised_is_no_pass(void) {
     why_t *why = run(AGV_STATE_INIT, 0);
-    sentence_no_trip(&sentence, why, 86000u * MS);
+    sentence_no_trip(&sentence, why, 86000 * MS);
     why_free(why);
     TEST_ASSERT_EQUAL_STRING("Nothing was supervised: the supervisor never left INIT.", sentence.headline);
     TEST_ASSERT_EQUAL_STRING(
@@ -292,7 +292,7 @@ void test_what_was_not_supervised_is_no_pass(void) {
 
 void test_no_trip_and_never_engaged(void) {
     why_t *why = run(AGV_STATE_STANDBY, 500);
-    sentence_no_trip(&sentence, why, 86000u * MS);
+    sentence_no_trip(&sentence, why, 86000 * MS);
     why_free(why);
     TEST_ASSERT_EQUAL_STRING("No trip: the supervisor found no reason to stop the vehicle.", sentence.headline);
     TEST_ASSERT_EQUAL_STRING("It supervised 85.500 s of 86.000 s. For the other 0.500 s it was in INIT.",
@@ -313,8 +313,8 @@ void test_a_fault_that_did_not_trip_in_init_is_no_warning(void) {
     event.recorded = (agv_event_t){
         .kind = AGV_EVENT_STATE, .a = (uint8_t)AGV_STATE_INIT, .b = (uint8_t)AGV_STATE_STANDBY, .c = AGV_FAULT_NONE};
     why_event(why, &event);
-    why_end(why, 2000u * MS);
-    sentence_no_trip(&sentence, why, 2000u * MS);
+    why_end(why, 2000 * MS);
+    sentence_no_trip(&sentence, why, 2000 * MS);
     TEST_ASSERT_TRUE(why_did_not_trip(why_fault(why, 0)));
     why_free(why);
     TEST_ASSERT_EQUAL_STRING("1 fault occurred in INIT, where nothing trips.", sentence.action);

@@ -26,7 +26,7 @@ void tearDown(void) {
 }
 
 static void receive(uint32_t id, uint64_t t_us, const uint8_t bytes[8]) {
-    hal_can_frame_t frame = {.id = id, .length = 8u};
+    hal_can_frame_t frame = {.id = id, .length = 8};
     memcpy(frame.data, bytes, sizeof frame.data);
     series_frame(series, HAL_CAN_VEHICLE, &frame, t_us);
 }
@@ -116,7 +116,7 @@ void test_a_lane_has_its_changes_and_when_it_was_lost(void) {
 
 void test_commands_of_the_supervisor_are_a_lane_of_their_own(void) {
     const uint8_t drive[8] = {1};
-    const hal_can_frame_t park = {.id = 0x168, .length = 8u, .data = {8}};
+    const hal_can_frame_t park = {.id = 0x168, .length = 8, .data = {8}};
     receive(0x168, 0, drive);
     series_sent(series, HAL_CAN_VEHICLE, &park, 5 * MS);
     end(10 * MS);
@@ -130,7 +130,7 @@ void test_commands_of_the_supervisor_are_a_lane_of_their_own(void) {
 
 void test_a_gateway_takes_commands_from_the_ai_side_alone(void) {
     const uint8_t drive[8] = {1};
-    hal_can_frame_t frame = {.id = 0x168, .length = 8u, .data = {2}};
+    hal_can_frame_t frame = {.id = 0x168, .length = 8, .data = {2}};
     config.topology = AGV_TOPOLOGY_GATEWAY;
     series_free(series);
     series = series_new(&config);
@@ -141,9 +141,9 @@ void test_a_gateway_takes_commands_from_the_ai_side_alone(void) {
 }
 
 void test_frames_that_the_supervisor_rejects_count_for_nothing(void) {
-    hal_can_frame_t frame = {.id = 0x101, .length = 7u};
+    hal_can_frame_t frame = {.id = 0x101, .length = 7};
     series_frame(series, HAL_CAN_VEHICLE, &frame, 0);
-    frame.length = 8u;
+    frame.length = 8;
     frame.flags = HAL_CAN_EXTENDED;
     series_frame(series, HAL_CAN_VEHICLE, &frame, 1 * MS);
     end(10 * MS);
@@ -213,15 +213,15 @@ void test_trips_close_to_each_other_have_their_own_surroundings(void) {
 }
 
 void test_only_the_first_trips_keep_their_surroundings(void) {
-    for (uint64_t trip = 1; trip <= SERIES_DETAILS_MAX + 3u; trip++) {
+    for (uint64_t trip = 1; trip <= SERIES_DETAILS_MAX + 3; trip++) {
         wheels(trip * 20 * S, 1);
         trip_at(trip * 20000);
     }
     end(1000 * (uint64_t)S);
     size_t count = 0;
     TEST_ASSERT_EQUAL(SERIES_DETAILS_MAX, json_array_size(at("details")));
-    TEST_ASSERT_NULL(series_frames(series, 20 * (SERIES_DETAILS_MAX + 1u) * (uint64_t)S, &count));
-    TEST_ASSERT_EQUAL(SERIES_DETAILS_MAX + 3u, json_array_size(at("lanes/state/t")));
+    TEST_ASSERT_NULL(series_frames(series, 20 * (SERIES_DETAILS_MAX + 1) * (uint64_t)S, &count));
+    TEST_ASSERT_EQUAL(SERIES_DETAILS_MAX + 3, json_array_size(at("lanes/state/t")));
 }
 
 void test_an_hour_has_no_more_steps_than_a_minute(void) {
@@ -243,10 +243,10 @@ void test_an_hour_has_no_more_steps_than_a_minute(void) {
 }
 
 void test_changes_without_room_are_counted(void) {
-    for (uint64_t i = 0; i < SERIES_CHANGES_MAX + 5u; i++) {
-        gear(i * 25 * MS, (i % 2u == 0u) ? 1 : 4);
+    for (uint64_t i = 0; i < SERIES_CHANGES_MAX + 5; i++) {
+        gear(i * 25 * MS, (i % 2 == 0) ? 1 : 4);
     }
-    end((SERIES_CHANGES_MAX + 5u) * 25 * (uint64_t)MS);
+    end((SERIES_CHANGES_MAX + 5) * 25 * (uint64_t)MS);
     is("left_out", "5");
     TEST_ASSERT_EQUAL(SERIES_CHANGES_MAX, json_array_size(at("lanes/gear/t")));
 }
@@ -256,7 +256,7 @@ void test_a_fault_that_changes_too_often_leaves_room_for_others(void) {
                              .recorded = {.kind = AGV_EVENT_FAULT, .a = AGV_FAULT_EPS_TEMP_ABOVE_110}};
     for (uint64_t i = 0; i < SERIES_CHANGES_MAX; i++) {
         event.t_ms = i * 10;
-        event.recorded.c = (i % 2u == 0u) ? 1 : 0;
+        event.recorded.c = (i % 2 == 0) ? 1 : 0;
         series_event(series, &event);
     }
     event.is_left_out = false;
@@ -264,7 +264,7 @@ void test_a_fault_that_changes_too_often_leaves_room_for_others(void) {
     series_event(series, &event);
     end(20 * (uint64_t)S);
     is("left_out", "512");
-    TEST_ASSERT_EQUAL((SERIES_CHANGES_MAX / 2u) + 1u, json_array_size(at("faults")));
+    TEST_ASSERT_EQUAL((SERIES_CHANGES_MAX / 2) + 1, json_array_size(at("faults")));
 }
 
 void test_when_the_output_opened_for_a_trip(void) {

@@ -33,7 +33,7 @@ static void event(uint64_t t_ms, agv_event_kind_t kind, unsigned a, unsigned b, 
 }
 
 static void state(uint64_t t_ms, agv_state_t to, agv_fault_t reason) {
-    event(t_ms, AGV_EVENT_STATE, 0u, (unsigned)to, (unsigned)reason, 0u);
+    event(t_ms, AGV_EVENT_STATE, 0, (unsigned)to, (unsigned)reason, 0);
 }
 
 static void led(uint64_t t_ms, int8_t code) {
@@ -43,14 +43,14 @@ static void led(uint64_t t_ms, int8_t code) {
 
 static void frame_at(uint64_t t_ms, uint32_t id, uint8_t byte0, uint8_t length) {
     const hal_can_frame_t frame = {.id = id, .length = length, .data = {byte0}};
-    scenario_check_frame(&check, (t_ms * 1000u) + 999u, HAL_CAN_VEHICLE, SCENARIO_FROM_SUPERVISOR, &frame);
+    scenario_check_frame(&check, (t_ms * 1000) + 999, HAL_CAN_VEHICLE, SCENARIO_FROM_SUPERVISOR, &frame);
 }
 
 /* The run is over; this is the one failure (NULL: there is none). Another run with these expectations begins. */
 static void expect_failure(const char *failure) {
     scenario_check_finish(&check, &counters);
     TEST_ASSERT_EQUAL_STRING((failure != NULL) ? failure : "", check.failures[0]);
-    TEST_ASSERT_EQUAL_size_t((failure != NULL) ? 1u : 0u, check.failure_count);
+    TEST_ASSERT_EQUAL_size_t((failure != NULL) ? 1 : 0, check.failure_count);
     scenario_check_init(&check, &scenario);
 }
 
@@ -64,18 +64,18 @@ void test_the_second_of_two_states(void) {
         agv_fault_t reason;
         const char *seen; /* NULL: as expected */
     } rows[] = {
-        {9u, AGV_STATE_TRIPPED, AGV_FAULT_BUS_OFF, NULL},
-        {10u, AGV_STATE_TRIPPED, AGV_FAULT_BUS_OFF, "TRIPPED (BUS_OFF) at 10 ms"},
-        {4u, AGV_STATE_TRIPPED, AGV_FAULT_BUS_OFF, "TRIPPED (BUS_OFF) at 4 ms"},
-        {5u, AGV_STATE_TRIPPED, AGV_FAULT_TX_STALLED, "TRIPPED (TX_STALLED) at 5 ms"},
-        {5u, AGV_STATE_STANDBY, AGV_FAULT_NONE, "STANDBY (no reason) at 5 ms"},
+        {9, AGV_STATE_TRIPPED, AGV_FAULT_BUS_OFF, NULL},
+        {10, AGV_STATE_TRIPPED, AGV_FAULT_BUS_OFF, "TRIPPED (BUS_OFF) at 10 ms"},
+        {4, AGV_STATE_TRIPPED, AGV_FAULT_BUS_OFF, "TRIPPED (BUS_OFF) at 4 ms"},
+        {5, AGV_STATE_TRIPPED, AGV_FAULT_TX_STALLED, "TRIPPED (TX_STALLED) at 5 ms"},
+        {5, AGV_STATE_STANDBY, AGV_FAULT_NONE, "STANDBY (no reason) at 5 ms"},
     };
-    for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         char failure[120];
         (void)snprintf(failure, sizeof failure, "line 5: TRIPPED (BUS_OFF) is expected in 5..9 ms, seen: %s",
                        (rows[i].seen != NULL) ? rows[i].seen : "");
         expect(TWO_STATES);
-        state(0u, AGV_STATE_INIT, AGV_FAULT_NONE);
+        state(0, AGV_STATE_INIT, AGV_FAULT_NONE);
         state(rows[i].t_ms, rows[i].to, rows[i].reason);
         expect_failure((rows[i].seen != NULL) ? failure : NULL);
     }
@@ -83,13 +83,13 @@ void test_the_second_of_two_states(void) {
 
 void test_a_state_that_is_missing(void) {
     expect(TWO_STATES);
-    state(0u, AGV_STATE_INIT, AGV_FAULT_NONE);
+    state(0, AGV_STATE_INIT, AGV_FAULT_NONE);
     expect_failure("line 5: TRIPPED (BUS_OFF) is expected in 5..9 ms, not seen");
 }
 
 void test_a_state_that_nobody_expects(void) {
     expect(NO_STATES);
-    state(0u, AGV_STATE_INIT, AGV_FAULT_NONE);
+    state(0, AGV_STATE_INIT, AGV_FAULT_NONE);
     expect_failure("no further change of state is expected, but at 0 ms: INIT (no reason)");
 }
 
@@ -136,11 +136,11 @@ void test_frames(void) {
          {{9, 0x168, 1, 2}, {15, 0x168, 8, 2}, {20, 0x168, 1, 2}, {20, 0x168, 1, 2}},
          "a frame is forbidden in 10..20 ms, seen: 168h [01 00] at 20 ms"},
     };
-    for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         char text[200];
         (void)snprintf(text, sizeof text, NO_STATES "%s", rows[i].expected);
         expect(text);
-        for (size_t k = 0u; (k < 4u) && (rows[i].frames[k].length > 0u); k++) {
+        for (size_t k = 0; (k < 4) && (rows[i].frames[k].length > 0); k++) {
             frame_at(rows[i].frames[k].t_ms, rows[i].frames[k].id, rows[i].frames[k].byte0, rows[i].frames[k].length);
         }
         (void)snprintf(text, sizeof text, "line 6: %s", (rows[i].failure != NULL) ? rows[i].failure : "");
@@ -150,68 +150,68 @@ void test_frames(void) {
 
 void test_a_period(void) {
     expect(NO_STATES EVERY);
-    for (unsigned t = 50u; t <= 1000u; t += 101u) {
-        frame_at(t, 0x168u, 0x08u, 8u);
+    for (unsigned t = 50; t <= 1000; t += 101) {
+        frame_at(t, 0x168u, 0x08u, 8);
     }
     expect_failure(NULL);
 }
 
 void test_frames_of_others_do_not_count(void) {
-    const hal_can_frame_t frame = {.id = 0x168u, .length = 8u};
+    const hal_can_frame_t frame = {.id = 0x168u, .length = 8};
     expect(NO_STATES "  never: [{id: 168h}]\n");
-    scenario_check_frame(&check, 1000u, HAL_CAN_VEHICLE, VEHICLE_AI, &frame);
+    scenario_check_frame(&check, 1000, HAL_CAN_VEHICLE, VEHICLE_AI, &frame);
     expect_failure(NULL);
     expect(NO_STATES "  never: [{id: 168h, from: ai, side: ai}]\n");
-    scenario_check_frame(&check, 1000u, HAL_CAN_VEHICLE, VEHICLE_AI, &frame);
+    scenario_check_frame(&check, 1000, HAL_CAN_VEHICLE, VEHICLE_AI, &frame);
     expect_failure(NULL);
     expect(NO_STATES "  never: [{from: anybody, at_ms: 1}]\n");
-    scenario_check_frame(&check, 1000u, HAL_CAN_AI, VEHICLE_EPS, &frame);
+    scenario_check_frame(&check, 1000, HAL_CAN_AI, VEHICLE_EPS, &frame);
     expect_failure("line 6: a frame is forbidden at 1 ms, seen: 168h [00 00 00 00 00 00 00 00] at 1 ms");
 }
 
 void test_changes_of_the_safety_output(void) {
     expect(NO_STATES "  safety_output: [{closed: true, at_ms: 5}]\n");
-    scenario_check_output(&check, 4u, false);
-    scenario_check_output(&check, 5u, true);
+    scenario_check_output(&check, 4, false);
+    scenario_check_output(&check, 5, true);
     expect_failure(NULL);
-    scenario_check_output(&check, 6u, true);
+    scenario_check_output(&check, 6, true);
     expect_failure("line 6: safety output closed is expected at 5 ms, seen: closed at 6 ms");
     expect_failure("line 6: safety output closed is expected at 5 ms, not seen");
     expect(NO_STATES);
-    scenario_check_output(&check, 6u, true);
+    scenario_check_output(&check, 6, true);
     expect_failure("no further change of the safety output is expected, but at 6 ms: closed");
 }
 
 void test_the_led_all_the_while(void) {
     expect(NO_STATES "  led: [{code: 0, at_ms: [0, 9]}, {code: 13, at_ms: [10, 1000]}]\n");
-    led(0u, 0);
-    led(10u, 13);
+    led(0, 0);
+    led(10, 13);
     expect_failure(NULL);
     expect(NO_STATES "  led: [{code: 13, at_ms: [10, 1000]}]\n");
-    led(0u, 0);
-    led(10u, 13);
-    led(500u, 14);
-    led(501u, 13);
+    led(0, 0);
+    led(10, 13);
+    led(500, 14);
+    led(501, 13);
     expect_failure("line 6: LED code 13 is expected in 10..1000 ms, seen: 14 in 500..500 ms");
 }
 
 void test_faults_begin_and_end(void) {
     expect(NO_STATES "  faults: [{name: BUS_OFF, class: trip, raised_ms: 5, ended_ms: [7, 8]}]\n");
-    event(5u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1u, 0u);
-    event(8u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 0u, 0u);
-    event(9u, AGV_EVENT_FAULT, AGV_FAULT_RX_OVERRUN, AGV_CLASS_WARN, 1u, 0u);
+    event(5, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1, 0);
+    event(8, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 0, 0);
+    event(9, AGV_EVENT_FAULT, AGV_FAULT_RX_OVERRUN, AGV_CLASS_WARN, 1, 0);
     expect_failure(NULL);
     expect(NO_STATES "  faults: [{name: BUS_OFF, class: trip, raised_ms: 5}]\n");
-    event(5u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_WARN, 1u, 0u);
+    event(5, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_WARN, 1, 0);
     expect_failure("line 6: BUS_OFF is expected to be raised at 5 ms as a trip, seen at 5 ms");
     expect(NO_STATES "  faults: [{name: BUS_OFF, raised_ms: 5}]\n");
     expect_failure("line 6: BUS_OFF is expected to be raised at 5 ms, not seen");
     expect(NO_STATES "  faults: [{name: BUS_OFF, raised_ms: 5, ended_ms: never}]\n");
-    event(5u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1u, 0u);
-    event(8u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 0u, 0u);
+    event(5, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1, 0);
+    event(8, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 0, 0);
     expect_failure("line 6: BUS_OFF is expected to end never, it ended at 8 ms");
     expect(NO_STATES "  faults: [{name: BUS_OFF, raised_ms: 5, ended_ms: 8}]\n");
-    event(5u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1u, 0u);
+    event(5, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1, 0);
     expect_failure("line 6: BUS_OFF is expected to end at 8 ms, it did not");
 }
 
@@ -220,74 +220,74 @@ void test_the_parts_that_failed_their_test(void) {
     char text[400];
     (void)snprintf(text, sizeof text, "%s%s", NO_STATES, line);
     expect(text);
-    event(5u, AGV_EVENT_FAULT, AGV_FAULT_SELF_TEST_FAILED, AGV_CLASS_TRIP, 1u, HAL_SELF_TEST_RAM | HAL_SELF_TEST_CORE);
+    event(5, AGV_EVENT_FAULT, AGV_FAULT_SELF_TEST_FAILED, AGV_CLASS_TRIP, 1, HAL_SELF_TEST_RAM | HAL_SELF_TEST_CORE);
     expect_failure(NULL);
-    event(5u, AGV_EVENT_FAULT, AGV_FAULT_SELF_TEST_FAILED, AGV_CLASS_TRIP, 1u, HAL_SELF_TEST_RAM);
+    event(5, AGV_EVENT_FAULT, AGV_FAULT_SELF_TEST_FAILED, AGV_CLASS_TRIP, 1, HAL_SELF_TEST_RAM);
     expect_failure("line 6: SELF_TEST_FAILED [ram, core] is expected to be raised at 5 ms, seen: [ram] at 5 ms");
 }
 
 void test_no_other_faults(void) {
     expect(NO_STATES "  faults: [{name: BUS_OFF, raised_ms: 5}]\n  other_faults: never\n");
-    event(5u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1u, 0u);
-    event(6u, AGV_EVENT_FAULT, AGV_FAULT_RX_OVERRUN, AGV_CLASS_WARN, 1u, 0u);
+    event(5, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1, 0);
+    event(6, AGV_EVENT_FAULT, AGV_FAULT_RX_OVERRUN, AGV_CLASS_WARN, 1, 0);
     expect_failure("no other fault is expected, but at 6 ms: RX_OVERRUN (warn)");
-    event(5u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1u, 0u);
-    event(6u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1u, 0u); /* a second time */
+    event(5, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1, 0);
+    event(6, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1, 0); /* a second time */
     expect_failure("no other fault is expected, but at 6 ms: BUS_OFF (trip)");
 }
 
 void test_resets_and_what_is_missing_at_start(void) {
     expect(NO_STATES "  resets: [{accepted: false, why: [button, manual], at_ms: 5}]\n  startup: [{missing: "
                      "[messages], at_ms: 6}]\n");
-    event(5u, AGV_EVENT_RESET, 0u, 0u, 0u, AGV_MISSING_BUTTON | AGV_MISSING_MANUAL);
-    event(6u, AGV_EVENT_STARTUP, 0u, 0u, 0u, AGV_MISSING_MESSAGES);
+    event(5, AGV_EVENT_RESET, 0, 0, 0, AGV_MISSING_BUTTON | AGV_MISSING_MANUAL);
+    event(6, AGV_EVENT_STARTUP, 0, 0, 0, AGV_MISSING_MESSAGES);
     expect_failure(NULL);
     expect(NO_STATES "  resets: [{accepted: false, why: [button, manual], at_ms: 5}]\n");
-    event(5u, AGV_EVENT_RESET, 0u, 0u, 0u, AGV_MISSING_BUTTON);
+    event(5, AGV_EVENT_RESET, 0, 0, 0, AGV_MISSING_BUTTON);
     expect_failure("line 6: reset refused [manual, button] is expected at 5 ms, seen: refused [button] at 5 ms");
     expect(NO_STATES "  resets: [{accepted: true, at_ms: 5}]\n");
     expect_failure("line 6: reset accepted [] is expected at 5 ms, not seen");
     expect(NO_STATES);
-    event(5u, AGV_EVENT_RESET, 1u, 0u, 0u, 0u);
+    event(5, AGV_EVENT_RESET, 1, 0, 0, 0);
     expect_failure("no further reset is expected, but at 5 ms: accepted []");
     expect(NO_STATES "  startup: [{missing: [messages], at_ms: 6}]\n");
-    event(7u, AGV_EVENT_STARTUP, 0u, 0u, 0u, AGV_MISSING_MESSAGES);
+    event(7, AGV_EVENT_STARTUP, 0, 0, 0, AGV_MISSING_MESSAGES);
     expect_failure("line 6: missing at start [messages] is expected at 6 ms, seen: [messages] at 7 ms");
     expect_failure("line 6: missing at start [messages] is expected at 6 ms, not seen");
     expect(NO_STATES);
-    event(7u, AGV_EVENT_STARTUP, 0u, 0u, 0u, AGV_MISSING_STATE);
+    event(7, AGV_EVENT_STARTUP, 0, 0, 0, AGV_MISSING_STATE);
     expect_failure("no report of missing conditions at start is expected, but at 7 ms: [state]");
 }
 
 void test_the_vehicle_at_a_moment(void) {
     const vehicle_view_t view = {.gear = AGV_GEAR_D, .autopilot = true, .speed_mm_s = 1200};
     expect(NO_STATES "  vehicle: [{at_ms: 7, gear: D, mode: autopilot, speed_mm_s: [1190, 1200]}]\n");
-    TEST_ASSERT_FALSE(scenario_check_wants_vehicle(&check, 6u));
-    TEST_ASSERT_TRUE(scenario_check_wants_vehicle(&check, 7u));
-    scenario_check_vehicle(&check, 7u, &view);
+    TEST_ASSERT_FALSE(scenario_check_wants_vehicle(&check, 6));
+    TEST_ASSERT_TRUE(scenario_check_wants_vehicle(&check, 7));
+    scenario_check_vehicle(&check, 7, &view);
     expect_failure(NULL);
     expect(NO_STATES "  vehicle: [{at_ms: 7, gear: P}]\n");
-    scenario_check_vehicle(&check, 7u, &view);
+    scenario_check_vehicle(&check, 7, &view);
     expect_failure("line 6: vehicle at 7 ms: gear (P 8, R 2, N 4, D 1) 8h is expected, seen: 1h");
     expect(NO_STATES "  vehicle: [{at_ms: 7, speed_mm_s: 0}]\n");
-    scenario_check_vehicle(&check, 7u, &view);
+    scenario_check_vehicle(&check, 7, &view);
     expect_failure("line 6: vehicle at 7 ms: speed in mm/s 0..0 is expected, seen: 1200");
 }
 
 void test_counters_at_the_end(void) {
     expect(NO_STATES "  counters_at_end: {sent: 3, rejected_remote: [1, 2]}\n");
-    counters.sent = 3u;
-    counters.rejected[AGV_REJECTED_REMOTE] = 2u;
+    counters.sent = 3;
+    counters.rejected[AGV_REJECTED_REMOTE] = 2;
     expect_failure(NULL);
-    counters.rejected[AGV_REJECTED_REMOTE] = 3u;
+    counters.rejected[AGV_REJECTED_REMOTE] = 3;
     expect_failure("line 6: counter rejected_remote: 1..2 is expected at the end, seen: 3");
 }
 
 void test_more_failures_than_are_kept_are_counted(void) {
     expect(NO_STATES);
-    for (unsigned i = 0u; i < SCENARIO_FAILURES_MAX + 5u; i++) {
+    for (unsigned i = 0; i < SCENARIO_FAILURES_MAX + 5; i++) {
         state(i, AGV_STATE_INIT, AGV_FAULT_NONE);
     }
     scenario_check_finish(&check, &counters);
-    TEST_ASSERT_EQUAL_size_t(SCENARIO_FAILURES_MAX + 5u, check.failure_count);
+    TEST_ASSERT_EQUAL_size_t(SCENARIO_FAILURES_MAX + 5, check.failure_count);
 }

@@ -42,13 +42,13 @@ static void read_bad(const char *text, const char *expected) {
 void test_the_least_that_a_file_needs(void) {
     read_good(HEAD STATES);
     TEST_ASSERT_EQUAL_STRING("n", scenario.name);
-    TEST_ASSERT_EQUAL_UINT32(1000u, scenario.duration_ms);
-    TEST_ASSERT_EQUAL_UINT32(500000u, scenario.bitrate);
+    TEST_ASSERT_EQUAL_UINT32(1000, scenario.duration_ms);
+    TEST_ASSERT_EQUAL_UINT32(500000, scenario.bitrate);
     TEST_ASSERT_EQUAL(HAL_RESET_POWER_ON, scenario.reset_cause);
     TEST_ASSERT_EQUAL_HEX32(0, scenario.board.failed);
     TEST_ASSERT_TRUE(scenario.vehicle.park_guard);
     TEST_ASSERT_FALSE(scenario.fixes_topology);
-    TEST_ASSERT_EQUAL_size_t(1u, scenario.shows_count);
+    TEST_ASSERT_EQUAL_size_t(1, scenario.shows_count);
 }
 
 void test_everything_about_the_beginning(void) {
@@ -61,9 +61,9 @@ void test_everything_about_the_beginning(void) {
     TEST_ASSERT_EQUAL_UINT16(AGV_TOPOLOGY_GATEWAY, scenario.config.topology);
     TEST_ASSERT_EQUAL_UINT16(AGV_ID_SET_TABLE, scenario.config.id_set);
     TEST_ASSERT_EQUAL_UINT16(AGV_PARK_AT_STANDSTILL, scenario.config.park);
-    TEST_ASSERT_EQUAL_UINT16(60u, scenario.config.vcu_heartbeat_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(60, scenario.config.vcu_heartbeat_timeout_ms);
     TEST_ASSERT_EQUAL_HEX32(HAL_SELF_TEST_PROCESSOR, scenario.board.failed);
-    TEST_ASSERT_EQUAL_UINT32(250000u, scenario.bitrate);
+    TEST_ASSERT_EQUAL_UINT32(250000, scenario.bitrate);
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, scenario.clock_start_ms);
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, scenario.watchdog_ms);
     TEST_ASSERT_EQUAL(HAL_RESET_BROWN_OUT, scenario.reset_cause);
@@ -71,10 +71,10 @@ void test_everything_about_the_beginning(void) {
     TEST_ASSERT_EQUAL_HEX16(0x43F, scenario.vehicle.ids.of[AGV_MSG_TURN_SIGNAL_COMMAND]);
     TEST_ASSERT_FALSE(scenario.vehicle.park_guard);
     TEST_ASSERT_TRUE(scenario.vehicle.obeys_short_frames);
-    TEST_ASSERT_EQUAL_UINT32(5u, scenario.vehicle.start_ms[VEHICLE_VCU]);
+    TEST_ASSERT_EQUAL_UINT32(5, scenario.vehicle.start_ms[VEHICLE_VCU]);
     TEST_ASSERT_EQUAL_UINT32(VEHICLE_NEVER, scenario.vehicle.start_ms[VEHICLE_EPS]);
-    TEST_ASSERT_EQUAL_UINT32(7u, scenario.vehicle.seed);
-    TEST_ASSERT_EQUAL_UINT16(3000u, scenario.vehicle.top_speed_mm_s);
+    TEST_ASSERT_EQUAL_UINT32(7, scenario.vehicle.seed);
+    TEST_ASSERT_EQUAL_UINT16(3000, scenario.vehicle.top_speed_mm_s);
 }
 
 void test_times_with_units_and_identifiers_in_any_notation(void) {
@@ -87,22 +87,22 @@ void test_times_with_units_and_identifiers_in_any_notation(void) {
         "  - {at_ms: 3s, bus: send, id: 360, bytes: \"01\"}\n"
         "expect:\n  states: []\n  frames: [{id: 168h, at_ms: [1s, 1500], jitter_ms: 3000us}]\n"
         "  faults: [{name: BUS_OFF, raised_ms: 1s, ended_ms: [1s, 2s]}]\n");
-    TEST_ASSERT_EQUAL_UINT32(90000u, scenario.duration_ms);
-    TEST_ASSERT_EQUAL_UINT32(500u, scenario.tick_phase_us);
-    TEST_ASSERT_EQUAL_UINT32(60000u, scenario.clock_start_ms);
-    TEST_ASSERT_EQUAL_UINT32(2000u, scenario.vehicle.start_ms[VEHICLE_VCU]);
-    TEST_ASSERT_EQUAL_UINT16(120u, scenario.vehicle.gear_change_ms);
-    TEST_ASSERT_EQUAL_UINT16(3u, scenario.vehicle.phase_ms[AGV_MSG_GEAR_STATUS]);
-    TEST_ASSERT_EQUAL_UINT16(90u, scenario.vehicle.eps_lost_ms);
-    TEST_ASSERT_EQUAL_UINT32(2000u, scenario.steps[0].at_ms);
-    TEST_ASSERT_EQUAL_UINT32(250u, scenario.steps[0].vehicle.ms);
+    TEST_ASSERT_EQUAL_UINT32(90000, scenario.duration_ms);
+    TEST_ASSERT_EQUAL_UINT32(500, scenario.tick_phase_us);
+    TEST_ASSERT_EQUAL_UINT32(60000, scenario.clock_start_ms);
+    TEST_ASSERT_EQUAL_UINT32(2000, scenario.vehicle.start_ms[VEHICLE_VCU]);
+    TEST_ASSERT_EQUAL_UINT16(120, scenario.vehicle.gear_change_ms);
+    TEST_ASSERT_EQUAL_UINT16(3, scenario.vehicle.phase_ms[AGV_MSG_GEAR_STATUS]);
+    TEST_ASSERT_EQUAL_UINT16(90, scenario.vehicle.eps_lost_ms);
+    TEST_ASSERT_EQUAL_UINT32(2000, scenario.steps[0].at_ms);
+    TEST_ASSERT_EQUAL_UINT32(250, scenario.steps[0].vehicle.ms);
     TEST_ASSERT_EQUAL_HEX32(0x168, scenario.steps[1].vehicle.frame.id);
     TEST_ASSERT_EQUAL_HEX32(0x168, scenario.steps[2].vehicle.frame.id);
     TEST_ASSERT_EQUAL_HEX32(0x168, scenario.expect.frames.items[0].id);
-    TEST_ASSERT_EQUAL_UINT32(1000u, scenario.expect.frames.items[0].at_ms.from);
-    TEST_ASSERT_EQUAL_UINT32(1500u, scenario.expect.frames.items[0].at_ms.to);
-    TEST_ASSERT_EQUAL_UINT32(3u, scenario.expect.frames.items[0].jitter_ms);
-    TEST_ASSERT_EQUAL_UINT32(2000u, scenario.expect.faults.items[0].ended_ms.to);
+    TEST_ASSERT_EQUAL_UINT32(1000, scenario.expect.frames.items[0].at_ms.from);
+    TEST_ASSERT_EQUAL_UINT32(1500, scenario.expect.frames.items[0].at_ms.to);
+    TEST_ASSERT_EQUAL_UINT32(3, scenario.expect.frames.items[0].jitter_ms);
+    TEST_ASSERT_EQUAL_UINT32(2000, scenario.expect.faults.items[0].ended_ms.to);
 }
 
 /* Shows: HW-1, HW-2, HW-3, HW-4 */
@@ -130,8 +130,8 @@ void test_the_board_and_what_happens_to_it(void) {
         SCENARIO_STOP_OPEN,      SCENARIO_STOP_OPEN,     SCENARIO_BUTTON,        SCENARIO_BUTTON,
         SCENARIO_BUTTON_BOUNCES, SCENARIO_CLOCK,         SCENARIO_CLOCK,         SCENARIO_CLOCK,
         SCENARIO_TEST_FAILS};
-    TEST_ASSERT_EQUAL_size_t(13u, scenario.step_count);
-    for (size_t i = 0u; i < 13u; i++) {
+    TEST_ASSERT_EQUAL_size_t(13, scenario.step_count);
+    for (size_t i = 0; i < 13; i++) {
         TEST_ASSERT_FALSE(scenario.steps[i].of_vehicle);
         TEST_ASSERT_EQUAL(expected[i], scenario.steps[i].supervisor.what);
     }
@@ -139,8 +139,8 @@ void test_the_board_and_what_happens_to_it(void) {
     TEST_ASSERT_FALSE(scenario.steps[5].supervisor.on);
     TEST_ASSERT_TRUE(scenario.steps[6].supervisor.on);
     TEST_ASSERT_FALSE(scenario.steps[7].supervisor.on);
-    TEST_ASSERT_EQUAL_UINT8(2u, scenario.steps[8].supervisor.bounce_count);
-    TEST_ASSERT_EQUAL_UINT16(10000u, scenario.steps[8].supervisor.bounce_ms[1]);
+    TEST_ASSERT_EQUAL_UINT8(2, scenario.steps[8].supervisor.bounce_count);
+    TEST_ASSERT_EQUAL_UINT16(10000, scenario.steps[8].supervisor.bounce_ms[1]);
     TEST_ASSERT_EQUAL_INT16(900, scenario.steps[9].supervisor.permille);
     TEST_ASSERT_EQUAL_INT16(-60, scenario.steps[10].supervisor.permille);
     TEST_ASSERT_EQUAL_INT16(0, scenario.steps[11].supervisor.permille);
@@ -158,30 +158,30 @@ void test_steps_become_actions(void) {
                    "  - {at_ms: 7, bus: destroy, frames: 3}\n"
                    "  - {at_ms: 8, operator: press, button: 2}\n"
                    "  - {at_ms: 9, bus: deliver, kind: fd, message: vehicle_status, bytes: \"\"}\n" STATES);
-    TEST_ASSERT_EQUAL_size_t(9u, scenario.step_count);
+    TEST_ASSERT_EQUAL_size_t(9, scenario.step_count);
     const scenario_step_t *step = scenario.steps;
     TEST_ASSERT_EQUAL(VEHICLE_DO_AI_DRIVE, step[0].vehicle.what);
     TEST_ASSERT_EQUAL_UINT8(AGV_GEAR_R, step[0].vehicle.gear);
-    TEST_ASSERT_EQUAL_UINT16(250u, step[0].vehicle.throttle_permille);
+    TEST_ASSERT_EQUAL_UINT16(250, step[0].vehicle.throttle_permille);
     TEST_ASSERT_EQUAL_INT32(-900, step[0].vehicle.angle_ddeg);
     TEST_ASSERT_EQUAL_HEX8(0x51u, step[1].vehicle.value[2]);
     TEST_ASSERT_EQUAL_HEX8(0x46u, step[1].vehicle.value[3]);
     TEST_ASSERT_EQUAL_HEX8(0xFFu, step[1].vehicle.keep[1]);
     TEST_ASSERT_EQUAL_HEX8(0x00u, step[1].vehicle.keep[2]);
-    TEST_ASSERT_EQUAL_UINT16(3u, step[1].vehicle.count);
+    TEST_ASSERT_EQUAL_UINT16(3, step[1].vehicle.count);
     TEST_ASSERT_EQUAL_HEX8(0xC0u, step[2].vehicle.value[6]);
     TEST_ASSERT_EQUAL_HEX8(0x3Fu, step[2].vehicle.keep[6]);
     TEST_ASSERT_EQUAL_UINT16(VEHICLE_FOREVER, step[2].vehicle.count);
     TEST_ASSERT_EQUAL_HEX8(0xFFu, step[3].vehicle.keep[1]);
     TEST_ASSERT_EQUAL_HEX8(0x00u, step[3].vehicle.keep[7]);
     TEST_ASSERT_EQUAL_HEX32(0x1ABCDEFFu, step[4].vehicle.frame.id);
-    TEST_ASSERT_EQUAL_UINT8(2u, step[4].vehicle.frame.length);
+    TEST_ASSERT_EQUAL_UINT8(2, step[4].vehicle.frame.length);
     TEST_ASSERT_EQUAL_UINT16(VEHICLE_FOREVER, step[4].vehicle.count);
     TEST_ASSERT_EQUAL(HAL_RESET_LOCK_UP, step[5].supervisor.cause);
-    TEST_ASSERT_EQUAL_UINT32(20u, step[5].supervisor.ms);
+    TEST_ASSERT_EQUAL_UINT32(20, step[5].supervisor.ms);
     TEST_ASSERT_FALSE(step[5].of_vehicle);
-    TEST_ASSERT_EQUAL_UINT32(3u, step[6].supervisor.ms);
-    TEST_ASSERT_EQUAL_UINT16(2u, step[7].vehicle.count);
+    TEST_ASSERT_EQUAL_UINT32(3, step[6].supervisor.ms);
+    TEST_ASSERT_EQUAL_UINT16(2, step[7].vehicle.count);
     TEST_ASSERT_EQUAL_HEX32(0x363u, step[8].supervisor.frame.id);
     TEST_ASSERT_EQUAL_STRING("bus", step[8].actor);
 }
@@ -204,13 +204,13 @@ void test_expectations_are_read(void) {
               "angle_deg: -3, park_taken_at_mm_s: 0, alarms: 0x18}]\n"
               "  counters_at_end: {sent: 0, rejected_fd: [1, 2]}\n");
     const scenario_expect_t *expect = &scenario.expect;
-    TEST_ASSERT_EQUAL_size_t(2u, expect->states.count);
+    TEST_ASSERT_EQUAL_size_t(2, expect->states.count);
     TEST_ASSERT_EQUAL(AGV_FAULT_BUS_OFF, expect->states.items[1].reason);
-    TEST_ASSERT_EQUAL_UINT32(9u, expect->states.items[1].at_ms.to);
-    TEST_ASSERT_EQUAL_UINT8(3u, expect->frames.items[0].length);
-    TEST_ASSERT_EQUAL_HEX8(0u, expect->frames.items[0].mask[1]);
+    TEST_ASSERT_EQUAL_UINT32(9, expect->states.items[1].at_ms.to);
+    TEST_ASSERT_EQUAL_UINT8(3, expect->frames.items[0].length);
+    TEST_ASSERT_EQUAL_HEX8(0, expect->frames.items[0].mask[1]);
     TEST_ASSERT_EQUAL(VEHICLE_AI, expect->frames.items[0].from);
-    TEST_ASSERT_EQUAL_UINT32(3u, expect->frames.items[0].count.to);
+    TEST_ASSERT_EQUAL_UINT32(3, expect->frames.items[0].count.to);
     TEST_ASSERT_EQUAL_HEX32(0x168u, scenario_frame_id(&scenario, &expect->frames.items[0]));
     TEST_ASSERT_EQUAL_HEX32(SCENARIO_NO_ID, scenario_frame_id(&scenario, &expect->never.items[0]));
     TEST_ASSERT_EQUAL_INT8(-1, expect->leds.items[0].code);
@@ -221,7 +221,7 @@ void test_expectations_are_read(void) {
     TEST_ASSERT_EQUAL_HEX8(0x80u, expect->startups.items[0].missing);
     TEST_ASSERT_EQUAL_HEX8(0x18u, expect->vehicle.items[0].alarms);
     TEST_ASSERT_EQUAL_INT32(-5, expect->vehicle.items[0].speed_mm_s[0]);
-    TEST_ASSERT_EQUAL_size_t(2u, expect->counters.count);
+    TEST_ASSERT_EQUAL_size_t(2, expect->counters.count);
 }
 
 void test_the_command_line_chooses_what_the_file_leaves_open(void) {
@@ -242,7 +242,7 @@ typedef struct {
 } bad_t;
 
 static void read_all_bad(const bad_t *rows, size_t count) {
-    for (size_t i = 0u; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         read_bad(rows[i].text, rows[i].said);
     }
 }
@@ -448,17 +448,17 @@ void test_what_is_wrong_in_an_expectation_is_refused_with_its_line(void) {
 void test_there_is_room_for_so_many_and_no_more(void) {
     static char text[40000];
     size_t used = (size_t)snprintf(text, sizeof text, "%s", HEAD STATES "steps:\n");
-    for (unsigned i = 0u; i <= SCENARIO_STEPS_MAX; i++) {
+    for (unsigned i = 0; i <= SCENARIO_STEPS_MAX; i++) {
         used += (size_t)snprintf(&text[used], sizeof text - used, "  - {at_ms: 1, ai: stop}\n");
     }
     read_bad(text, "s.yaml:262: more than 256 steps");
     used = (size_t)snprintf(text, sizeof text, "%s", HEAD "expect:\n  states:\n");
-    for (unsigned i = 0u; i <= SCENARIO_EXPECT_MAX; i++) {
+    for (unsigned i = 0; i <= SCENARIO_EXPECT_MAX; i++) {
         used += (size_t)snprintf(&text[used], sizeof text - used, "    - {to: INIT, at_ms: 0}\n");
     }
     read_bad(text, "s.yaml:70: more than 64 of them");
     used = (size_t)snprintf(text, sizeof text, "name: n\nshows: [");
-    for (unsigned i = 0u; i <= SCENARIO_SHOWS_MAX; i++) {
+    for (unsigned i = 0; i <= SCENARIO_SHOWS_MAX; i++) {
         used += (size_t)snprintf(&text[used], sizeof text - used, "SUP-1, ");
     }
     (void)snprintf(&text[used], sizeof text - used, "]\n");

@@ -51,15 +51,15 @@ static void trip(uint64_t t_ms) {
 }
 
 static void gear_frame(uint64_t t_ms, uint8_t gear) {
-    const hal_can_frame_t frame = {.id = 0x168, .length = 8u, .data = {gear}};
-    scenario_check_frame(&check, t_ms * 1000u, HAL_CAN_VEHICLE, SCENARIO_FROM_SUPERVISOR, &frame);
+    const hal_can_frame_t frame = {.id = 0x168, .length = 8, .data = {gear}};
+    scenario_check_frame(&check, t_ms * 1000, HAL_CAN_VEHICLE, SCENARIO_FROM_SUPERVISOR, &frame);
 }
 
 /* The run is over; this is the one failure (NULL: there is none). Another run with these expectations begins. */
 static void expect_failure(const char *failure) {
     scenario_check_finish(&check, &counters);
     TEST_ASSERT_EQUAL_STRING((failure != NULL) ? failure : "", check.failures[0]);
-    TEST_ASSERT_EQUAL_size_t((failure != NULL) ? 1u : 0u, check.failure_count);
+    TEST_ASSERT_EQUAL_size_t((failure != NULL) ? 1 : 0, check.failure_count);
     memset(&events, 0, sizeof events);
     scenario_check_init(&check, &scenario);
 }
@@ -73,13 +73,13 @@ void test_a_time_after_a_step_is_that_of_the_step_and_so_much_more(void) {
         "  - {name: lives, after: dies, wait: 50ms, ai: start}\n"
         "  - {after: lives, ai: stop}\n"
         "expect:\n  states: [{to: INIT, after: dies, within: 20ms}, {to: STANDBY, after: lives, within: [5ms, 6]}]\n");
-    TEST_ASSERT_EQUAL_UINT32(350u, scenario.steps[1].at_ms);
-    TEST_ASSERT_EQUAL_UINT32(350u, scenario.steps[2].at_ms);
-    TEST_ASSERT_EQUAL_size_t(0u, scenario.waiting_count);
-    TEST_ASSERT_EQUAL_UINT32(300u, scenario.expect.states.items[0].at_ms.from);
-    TEST_ASSERT_EQUAL_UINT32(320u, scenario.expect.states.items[0].at_ms.to);
-    TEST_ASSERT_EQUAL_UINT32(355u, scenario.expect.states.items[1].at_ms.from);
-    TEST_ASSERT_EQUAL_UINT32(356u, scenario.expect.states.items[1].at_ms.to);
+    TEST_ASSERT_EQUAL_UINT32(350, scenario.steps[1].at_ms);
+    TEST_ASSERT_EQUAL_UINT32(350, scenario.steps[2].at_ms);
+    TEST_ASSERT_EQUAL_size_t(0, scenario.waiting_count);
+    TEST_ASSERT_EQUAL_UINT32(300, scenario.expect.states.items[0].at_ms.from);
+    TEST_ASSERT_EQUAL_UINT32(320, scenario.expect.states.items[0].at_ms.to);
+    TEST_ASSERT_EQUAL_UINT32(355, scenario.expect.states.items[1].at_ms.from);
+    TEST_ASSERT_EQUAL_UINT32(356, scenario.expect.states.items[1].at_ms.to);
 }
 
 void test_a_step_after_an_event_is_due_so_long_after_it_and_once(void) {
@@ -88,19 +88,19 @@ void test_a_step_after_an_event_is_due_so_long_after_it_and_once(void) {
           "  - {name: early, at_ms: 100, ai: stop}\n"
           "  - {name: again, after: trip 2, operator: press, button: 1}\n"
           "  - {after: again, wait: 7, operator: release, button: 1}\n" ANY);
-    TEST_ASSERT_NULL(scenario_player_next(&player, 99u));
-    TEST_ASSERT_EQUAL_PTR(&scenario.steps[1], scenario_player_next(&player, 100u));
-    trip(200u);
-    TEST_ASSERT_NULL(scenario_player_next(&player, 219u));
-    TEST_ASSERT_EQUAL_PTR(&scenario.steps[0], scenario_player_next(&player, 220u));
-    TEST_ASSERT_NULL(scenario_player_next(&player, 300u));
-    change(310u, AGV_STATE_SAFE, AGV_STATE_TRIPPED); /* a confirmation withdrawn is no second trip */
-    TEST_ASSERT_NULL(scenario_player_next(&player, 399u));
-    trip(400u);
-    TEST_ASSERT_EQUAL_PTR(&scenario.steps[2], scenario_player_next(&player, 400u));
-    TEST_ASSERT_NULL(scenario_player_next(&player, 406u));
-    TEST_ASSERT_EQUAL_PTR(&scenario.steps[3], scenario_player_next(&player, 407u));
-    TEST_ASSERT_NULL(scenario_player_next(&player, 1000u));
+    TEST_ASSERT_NULL(scenario_player_next(&player, 99));
+    TEST_ASSERT_EQUAL_PTR(&scenario.steps[1], scenario_player_next(&player, 100));
+    trip(200);
+    TEST_ASSERT_NULL(scenario_player_next(&player, 219));
+    TEST_ASSERT_EQUAL_PTR(&scenario.steps[0], scenario_player_next(&player, 220));
+    TEST_ASSERT_NULL(scenario_player_next(&player, 300));
+    change(310, AGV_STATE_SAFE, AGV_STATE_TRIPPED); /* a confirmation withdrawn is no second trip */
+    TEST_ASSERT_NULL(scenario_player_next(&player, 399));
+    trip(400);
+    TEST_ASSERT_EQUAL_PTR(&scenario.steps[2], scenario_player_next(&player, 400));
+    TEST_ASSERT_NULL(scenario_player_next(&player, 406));
+    TEST_ASSERT_EQUAL_PTR(&scenario.steps[3], scenario_player_next(&player, 407));
+    TEST_ASSERT_NULL(scenario_player_next(&player, 1000));
 }
 
 void test_every_event_has_its_word(void) {
@@ -111,24 +111,24 @@ void test_every_event_has_its_word(void) {
                 {"active", AGV_STATE_ACTIVE},
                 {"trip", AGV_STATE_TRIPPED},
                 {"safe", AGV_STATE_SAFE}};
-    for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         scenario_anchor_t anchor;
-        uint64_t at_ms = 0u;
+        uint64_t at_ms = 0;
         TEST_ASSERT_TRUE(scenario_anchor_read(rows[i].word, &anchor));
         TEST_ASSERT_FALSE(scenario_events_find(&events, anchor, &at_ms));
-        change(10u + i, AGV_STATE_INIT, rows[i].to);
+        change(10 + i, AGV_STATE_INIT, rows[i].to);
         TEST_ASSERT_TRUE(scenario_events_find(&events, anchor, &at_ms));
-        TEST_ASSERT_EQUAL_UINT64(10u + i, at_ms);
+        TEST_ASSERT_EQUAL_UINT64(10 + i, at_ms);
     }
     scenario_anchor_t reset;
-    uint64_t at_ms = 0u;
-    session_event_t event = {.t_ms = 50u, .recorded = {.kind = (uint8_t)AGV_EVENT_RESET, .a = 0u}};
+    uint64_t at_ms = 0;
+    session_event_t event = {.t_ms = 50, .recorded = {.kind = (uint8_t)AGV_EVENT_RESET, .a = 0}};
     TEST_ASSERT_TRUE(scenario_anchor_read("reset", &reset));
     TEST_ASSERT_FALSE(scenario_events_note(&events, &event)); /* refused */
-    event.recorded.a = 1u;
+    event.recorded.a = 1;
     TEST_ASSERT_TRUE(scenario_events_note(&events, &event));
     TEST_ASSERT_TRUE(scenario_events_find(&events, reset, &at_ms));
-    TEST_ASSERT_EQUAL_UINT64(50u, at_ms);
+    TEST_ASSERT_EQUAL_UINT64(50, at_ms);
     TEST_ASSERT_TRUE(scenario_anchor_read("trip 9", &reset));
     TEST_ASSERT_FALSE(scenario_anchor_read("trip 10", &reset));
     TEST_ASSERT_FALSE(scenario_anchor_read("trip 0", &reset));
@@ -140,43 +140,43 @@ void test_every_event_has_its_word(void) {
 
 void test_a_frame_within_a_time_after_the_trip(void) {
     begin(FRAME);
-    trip(100u);
-    gear_frame(105u, 8u);
+    trip(100);
+    gear_frame(105, 8);
     expect_failure(NULL);
-    trip(100u);
-    gear_frame(106u, 8u);
+    trip(100);
+    gear_frame(106, 8);
     expect_failure("line 6: 168h is expected at least once in 102..105 ms, seen: 0 (one at 106 ms)");
-    gear_frame(3u, 8u);
+    gear_frame(3, 8);
     expect_failure("line 6: 168h is expected at least once 2..5 ms after trip, seen: 0 (one at 3 ms)");
 }
 
 /* With a tolerance of 50 ms, "within: [2, 5]" is 48 ms before the trip to 55 ms after it. */
 static void tolerated(uint32_t sent_ms, const char *failure) {
     begin(FRAME);
-    check.expect.frames.items[0].at_ms.from = 0u;
-    check.expect.frames.items[0].at_ms.to = 55u;
-    check.expect.frames.items[0].at_ms.early = 48u;
-    trip(100u);
-    gear_frame(sent_ms, 8u);
+    check.expect.frames.items[0].at_ms.from = 0;
+    check.expect.frames.items[0].at_ms.to = 55;
+    check.expect.frames.items[0].at_ms.early = 48;
+    trip(100);
+    gear_frame(sent_ms, 8);
     expect_failure(failure);
 }
 
 void test_a_tolerance_begins_before_the_trip(void) {
-    tolerated(51u, "line 6: 168h is expected at least once in 52..155 ms, seen: 0 (one at 51 ms)");
-    tolerated(52u, NULL);
-    tolerated(155u, NULL);
-    tolerated(156u, "line 6: 168h is expected at least once in 52..155 ms, seen: 0 (one at 156 ms)");
+    tolerated(51, "line 6: 168h is expected at least once in 52..155 ms, seen: 0 (one at 51 ms)");
+    tolerated(52, NULL);
+    tolerated(155, NULL);
+    tolerated(156, "line 6: 168h is expected at least once in 52..155 ms, seen: 0 (one at 156 ms)");
 }
 
 void test_a_period_that_begins_with_an_event(void) {
     begin("expect:\n  states: any\n  frames: [{id: 168h, after: trip, within: 100ms, every_ms: 40}]\n");
-    trip(100u);
-    gear_frame(130u, 8u);
-    gear_frame(170u, 8u);
+    trip(100);
+    gear_frame(130, 8);
+    gear_frame(170, 8);
     expect_failure(NULL);
-    trip(100u);
-    gear_frame(143u, 8u);
-    gear_frame(183u, 8u);
+    trip(100);
+    gear_frame(143, 8);
+    gear_frame(183, 8);
     expect_failure("line 6: 168h is expected every 40 ms, seen: 43 ms after the previous one at 100 ms");
 }
 
@@ -184,27 +184,27 @@ void test_a_period_that_begins_with_an_event(void) {
 
 void test_a_frame_that_must_not_come_after_an_event(void) {
     begin(NEVER);
-    gear_frame(20u, 8u);
-    trip(100u);
-    gear_frame(110u, 8u);
-    trip(200u);
-    gear_frame(251u, 8u);
+    gear_frame(20, 8);
+    trip(100);
+    gear_frame(110, 8);
+    trip(200);
+    gear_frame(251, 8);
     expect_failure(NULL);
-    trip(100u);
-    trip(200u);
-    gear_frame(250u, 8u);
+    trip(100);
+    trip(200);
+    gear_frame(250, 8);
     expect_failure("line 6: a frame is forbidden in 200..250 ms, seen: 168h [08 00 00 00 00 00 00 00] at 250 ms");
-    trip(100u);
+    trip(100);
     expect_failure("line 6: a frame is forbidden after trip 2, which was not seen");
 }
 
 void test_a_state_after_a_state(void) {
     begin("expect:\n  states: [{to: TRIPPED, at_ms: [1, 900]}, {to: SAFE, after: trip, within: 300ms}]\n");
-    trip(100u);
-    change(400u, AGV_STATE_TRIPPED, AGV_STATE_SAFE);
+    trip(100);
+    change(400, AGV_STATE_TRIPPED, AGV_STATE_SAFE);
     expect_failure(NULL);
-    trip(100u);
-    change(401u, AGV_STATE_TRIPPED, AGV_STATE_SAFE);
+    trip(100);
+    change(401, AGV_STATE_TRIPPED, AGV_STATE_SAFE);
     expect_failure("line 5: SAFE (no reason) is expected in 100..400 ms, seen: SAFE (no reason) at 401 ms");
 }
 
@@ -217,16 +217,16 @@ static void led(uint64_t t_ms, int8_t code) {
 
 void test_the_led_at_some_time(void) {
     begin(LED);
-    led(0u, 0);
-    trip(100u);
-    led(150u, 14);
-    led(151u, 3);
+    led(0, 0);
+    trip(100);
+    led(150, 14);
+    led(151, 3);
     expect_failure(NULL);
-    led(0u, 0);
-    trip(100u);
-    led(151u, 14);
+    led(0, 0);
+    trip(100);
+    led(151, 14);
     expect_failure("line 6: LED code 14 is expected in 100..150 ms, not seen");
-    led(0u, 14);
+    led(0, 14);
     expect_failure("line 6: LED code 14 is expected 0..50 ms after trip, not seen");
 }
 
@@ -241,19 +241,19 @@ static void vehicle(uint32_t t_ms, uint8_t gear) {
 
 void test_the_vehicle_at_some_time(void) {
     begin(VEHICLE);
-    vehicle(99u, 8u);
-    trip(100u);
-    vehicle(100u, 1u);
-    vehicle(101u, 8u);
-    vehicle(102u, 1u);
-    vehicle(103u, 1u);
+    vehicle(99, 8);
+    trip(100);
+    vehicle(100, 1);
+    vehicle(101, 8);
+    vehicle(102, 1);
+    vehicle(103, 1);
     expect_failure(NULL);
-    trip(100u);
-    for (uint32_t t_ms = 100u; t_ms <= 110u; t_ms++) {
-        vehicle(t_ms, (t_ms > 103u) ? 8u : 1u);
+    trip(100);
+    for (uint32_t t_ms = 100; t_ms <= 110; t_ms++) {
+        vehicle(t_ms, (t_ms > 103) ? 8 : 1);
     }
     expect_failure("line 6: vehicle in 100..103 ms: gear (P 8, R 2, N 4, D 1) 8h is expected, seen: 1h");
-    vehicle(5u, 8u);
+    vehicle(5, 8);
     expect_failure("line 6: vehicle 0..3 ms after trip: the expected values were not seen before the end of the run");
 }
 
@@ -285,7 +285,7 @@ void test_what_makes_no_sense_is_refused_with_its_line(void) {
          "s.yaml:5: within: the lowest value is above"},
         {"expect:\n  states: []\n  faults: [{name: BUS_OFF, after: trip}]\n", "s.yaml:6: a fault: 'within' is missing"},
     };
-    for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         read_bad(rows[i].text, rows[i].said);
     }
 }

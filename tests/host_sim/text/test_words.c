@@ -13,11 +13,11 @@ void test_a_word_is_found_as_a_whole(void) {
 
 void test_the_word_with_an_index(void) {
     const char *word = NULL;
-    TEST_ASSERT_EQUAL_UINT(1, words_at("a|bb|ccc", 0u, &word));
+    TEST_ASSERT_EQUAL_UINT(1, words_at("a|bb|ccc", 0, &word));
     TEST_ASSERT_EQUAL_STRING("a|bb|ccc", word);
-    TEST_ASSERT_EQUAL_UINT(3, words_at("a|bb|ccc", 2u, &word));
+    TEST_ASSERT_EQUAL_UINT(3, words_at("a|bb|ccc", 2, &word));
     TEST_ASSERT_EQUAL_STRING("ccc", word);
-    TEST_ASSERT_EQUAL_UINT(0, words_at("a|bb|ccc", 3u, &word));
+    TEST_ASSERT_EQUAL_UINT(0, words_at("a|bb|ccc", 3, &word));
 }
 
 void test_a_decimal_number_of_64_bits(void) {
@@ -36,15 +36,15 @@ void test_a_decimal_number_of_64_bits(void) {
 
 void test_hexadecimal_digits_in_either_case(void) {
     uint64_t number = 0;
-    TEST_ASSERT_TRUE(words_hex("3fA", 3u, &number));
+    TEST_ASSERT_TRUE(words_hex("3fA", 3, &number));
     TEST_ASSERT_EQUAL_HEX64(0x3FA, number);
-    TEST_ASSERT_TRUE(words_hex("12345678", 4u, &number));
+    TEST_ASSERT_TRUE(words_hex("12345678", 4, &number));
     TEST_ASSERT_EQUAL_HEX64(0x1234, number);
-    TEST_ASSERT_TRUE(words_hex("FFFFFFFFFFFFFFFF", 16u, &number));
+    TEST_ASSERT_TRUE(words_hex("FFFFFFFFFFFFFFFF", 16, &number));
     TEST_ASSERT_EQUAL_HEX64(UINT64_MAX, number);
-    TEST_ASSERT_FALSE(words_hex("10000000000000000", 17u, &number));
-    TEST_ASSERT_FALSE(words_hex("1G", 2u, &number));
-    TEST_ASSERT_FALSE(words_hex("1", 0u, &number));
+    TEST_ASSERT_FALSE(words_hex("10000000000000000", 17, &number));
+    TEST_ASSERT_FALSE(words_hex("1G", 2, &number));
+    TEST_ASSERT_FALSE(words_hex("1", 0, &number));
 }
 
 void test_an_identifier_in_any_notation(void) {
@@ -68,7 +68,7 @@ void test_an_identifier_in_any_notation(void) {
 }
 
 void test_the_ending_of_a_noun(void) {
-    TEST_ASSERT_EQUAL_STRING("s", words_plural(0u));
-    TEST_ASSERT_EQUAL_STRING("", words_plural(1u));
-    TEST_ASSERT_EQUAL_STRING("s", words_plural(2u));
+    TEST_ASSERT_EQUAL_STRING("s", words_plural(0));
+    TEST_ASSERT_EQUAL_STRING("", words_plural(1));
+    TEST_ASSERT_EQUAL_STRING("s", words_plural(2));
 }

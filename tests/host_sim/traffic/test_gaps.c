@@ -12,7 +12,7 @@ void setUp(void) {
 }
 
 static void assert_within(uint64_t expected_us, uint64_t us) {
-    TEST_ASSERT_UINT64_WITHIN((expected_us / 64u) + 1u, expected_us, us);
+    TEST_ASSERT_UINT64_WITHIN((expected_us / 64) + 1, expected_us, us);
 }
 
 void test_no_gaps(void) {
@@ -67,7 +67,7 @@ void test_ranks_within_the_promised_error(void) {
     TEST_ASSERT_EQUAL_UINT64(100, gaps_quantile_us(&gaps, 1));
     assert_within(90000, gaps_without_longest_us(&gaps, 10000));
     TEST_ASSERT_GREATER_OR_EQUAL_UINT64(90000, gaps_without_longest_us(&gaps, 10000));
-    assert_within(60000, 100000u - gaps_longer_than(&gaps, 60000));
+    assert_within(60000, 100000 - gaps_longer_than(&gaps, 60000));
 }
 
 void test_outages_do_not_move_the_usual_longest_gap(void) {
@@ -84,9 +84,9 @@ void test_outages_do_not_move_the_usual_longest_gap(void) {
 void test_gaps_of_hours_and_of_nothing(void) {
     gaps_add(&gaps, 0, 0);
     gaps_add(&gaps, 0, UINT64_MAX);
-    gaps_add(&gaps, 0, 86400000000u);
+    gaps_add(&gaps, 0, 86400000000);
     TEST_ASSERT_EQUAL_UINT64(0, gaps_quantile_us(&gaps, 1));
-    assert_within(86400000000u, gaps_quantile_us(&gaps, 500));
+    assert_within(86400000000, gaps_quantile_us(&gaps, 500));
     TEST_ASSERT_EQUAL_UINT64(UINT64_MAX, gaps_quantile_us(&gaps, 1000));
     TEST_ASSERT_EQUAL_UINT64(2, gaps_longer_than(&gaps, 1000));
 }

@@ -37,8 +37,8 @@ void test_every_message_has_a_name_and_signals(void) {
         TEST_ASSERT_LESS_OR_EQUAL_UINT(SIGNALS_MAX, signals_count(message));
     }
     TEST_ASSERT_EQUAL_STRING("supervisor_status", signals_message_name(SIGNALS_STATUS_FRAME));
-    TEST_ASSERT_NULL(signals_message_name(SIGNALS_STATUS_FRAME + 1u));
-    TEST_ASSERT_EQUAL_UINT(0, signals_count(SIGNALS_STATUS_FRAME + 1u));
+    TEST_ASSERT_NULL(signals_message_name(SIGNALS_STATUS_FRAME + 1));
+    TEST_ASSERT_EQUAL_UINT(0, signals_count(SIGNALS_STATUS_FRAME + 1));
     TEST_ASSERT_NULL(signals_info(AGV_MSG_GEAR_STATUS, 1));
 }
 

@@ -30,7 +30,7 @@ static void restart(void) {
 static void feed_on(hal_can_side_t side, uint64_t t_us, uint32_t id, uint64_t bytes) {
     hal_can_frame_t frame = {.id = id, .length = 8};
     for (unsigned i = 0; i < 8; i++) {
-        frame.data[i] = (uint8_t)(bytes >> (8u * (7u - i)));
+        frame.data[i] = (uint8_t)(bytes >> (8 * (7 - i)));
     }
     traffic_frame(traffic, side, &frame, t_us);
 }
@@ -138,7 +138,7 @@ void test_a_heartbeat_is_a_changed_counter(void) {
 static counter_kind_t kind_of_steps(uint8_t step, unsigned frames) {
     counter_use_t use = {0};
     for (unsigned i = 0; i < frames; i++) {
-        counter_use_add(&use, (uint8_t)(i * step), i * 10u * MS);
+        counter_use_add(&use, (uint8_t)(i * step), i * 10 * MS);
     }
     return counter_use_kind(&use);
 }

@@ -9,7 +9,7 @@ void setUp(void) {
     vehicle_defaults(&config);
     connected = false;
     begin();
-    run_until(1u); /* the nodes have started */
+    run_until(1); /* the nodes have started */
 }
 
 static void command_signals(uint8_t flags, uint8_t counter) {
@@ -21,35 +21,35 @@ static void command_signals(uint8_t flags, uint8_t counter) {
 
 /* Engaged, with gear D and a throttle that keeps coming. */
 static void drive(uint64_t until_ms, uint8_t throttle) {
-    run_until(1u);
+    run_until(1);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_ENGAGE});
     while (now_ms < until_ms) {
-        command(AGV_MSG_GEAR_COMMAND, AGV_GEAR_D, 0u);
-        command(AGV_MSG_THROTTLE_COMMAND, throttle, 0u);
-        command_signals(0u, (uint8_t)now_ms);
-        run_until((now_ms + 100u < until_ms) ? now_ms + 100u : until_ms);
+        command(AGV_MSG_GEAR_COMMAND, AGV_GEAR_D, 0);
+        command(AGV_MSG_THROTTLE_COMMAND, throttle, 0);
+        command_signals(0, (uint8_t)now_ms);
+        run_until((now_ms + 100 < until_ms) ? now_ms + 100 : until_ms);
     }
 }
 
 /* Shows: P16 */
 void test_every_message_is_sent_on_its_cycle_by_its_node(void) {
-    run_until(1000u);
+    run_until(1000);
     for (int m = 0; m < AGV_MSG_COUNT; m++) {
         const agv_message_t message = (agv_message_t)m;
-        TEST_ASSERT_EQUAL_size_t(1000u / agv_message_cycle_ms(message), count_of(message, 0u));
+        TEST_ASSERT_EQUAL_size_t(1000 / agv_message_cycle_ms(message), count_of(message, 0));
         TEST_ASSERT_EQUAL(vehicle_sender_of(message), last_of(message)->from);
         TEST_ASSERT_EQUAL_UINT8(AGV_DLC, last_of(message)->frame.length);
-        TEST_ASSERT_EQUAL_UINT8(0u, last_of(message)->frame.flags);
+        TEST_ASSERT_EQUAL_UINT8(0, last_of(message)->frame.flags);
     }
 }
 
 void test_at_most_two_frames_start_in_one_millisecond(void) {
     uint8_t per_ms[1000] = {0};
 
-    run_until(1000u);
-    for (size_t i = 0u; i < sent_count; i++) {
+    run_until(1000);
+    for (size_t i = 0; i < sent_count; i++) {
         per_ms[sent[i].t_ms]++;
-        TEST_ASSERT_LESS_OR_EQUAL_UINT8(2u, per_ms[sent[i].t_ms]);
+        TEST_ASSERT_LESS_OR_EQUAL_UINT8(2, per_ms[sent[i].t_ms]);
     }
 }
 
@@ -61,7 +61,7 @@ void test_identifiers_are_those_of_the_configuration(void) {
     settings.id_gear_command = 0x169u;
     agv_config_ids(&settings, &config.ids);
     begin();
-    run_until(100u);
+    run_until(100);
     TEST_ASSERT_EQUAL_HEX32(0x203u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.id);
     TEST_ASSERT_EQUAL_HEX32(0x201u, last_of(AGV_MSG_TURN_SIGNAL_COMMAND)->frame.id);
     TEST_ASSERT_EQUAL_HEX32(0x169u, last_of(AGV_MSG_GEAR_COMMAND)->frame.id);
@@ -70,8 +70,8 @@ void test_identifiers_are_those_of_the_configuration(void) {
 void test_only_the_ai_computer_of_a_gateway_is_on_the_ai_side(void) {
     config.gateway = true;
     begin();
-    run_until(100u);
-    for (size_t i = 0u; i < sent_count; i++) {
+    run_until(100);
+    for (size_t i = 0; i < sent_count; i++) {
         TEST_ASSERT_EQUAL((sent[i].from == VEHICLE_AI) ? HAL_CAN_AI : HAL_CAN_VEHICLE, sent[i].side);
     }
     TEST_ASSERT_EQUAL(HAL_CAN_VEHICLE, vehicle_side_of(&vehicle, VEHICLE_ROGUE));
@@ -79,16 +79,16 @@ void test_only_the_ai_computer_of_a_gateway_is_on_the_ai_side(void) {
 
 /* Shows: P13 */
 void test_alive_counters_begin_at_0_and_wrap(void) {
-    run_until(1u);
-    TEST_ASSERT_EQUAL_UINT8(0u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7]);
-    run_until(2561u);
-    TEST_ASSERT_EQUAL_UINT8(0u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7]);
-    run_until(2562u);
-    TEST_ASSERT_EQUAL_UINT8(0u, last_of(AGV_MSG_STEERING_STATUS)->frame.data[0]);
+    run_until(1);
+    TEST_ASSERT_EQUAL_UINT8(0, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7]);
+    run_until(2561);
+    TEST_ASSERT_EQUAL_UINT8(0, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7]);
+    run_until(2562);
+    TEST_ASSERT_EQUAL_UINT8(0, last_of(AGV_MSG_STEERING_STATUS)->frame.data[0]);
 }
 
 void test_it_stands_in_park_and_manual_at_first(void) {
-    run_until(100u);
+    run_until(100);
     const vehicle_view_t view = look();
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, view.gear);
     TEST_ASSERT_FALSE(view.autopilot);
@@ -98,84 +98,84 @@ void test_it_stands_in_park_and_manual_at_first(void) {
 }
 
 void test_a_gear_takes_time_and_the_wheels_accelerate_with_the_throttle(void) {
-    drive(119u, 75u);
+    drive(119, 75);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, look().gear);
-    drive(130u, 75u);
+    drive(130, 75);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
-    drive(620u, 75u);
+    drive(620, 75);
     TEST_ASSERT_INT32_WITHIN(25, 500, look().speed_mm_s); /* 1 m/s2 for half a second */
-    drive(3000u, 75u);
+    drive(3000, 75);
     TEST_ASSERT_EQUAL_INT32(1200, look().speed_mm_s); /* 30 % of 4 m/s */
-    TEST_ASSERT_EQUAL_UINT16(300u, look().throttle_permille);
+    TEST_ASSERT_EQUAL_UINT16(300, look().throttle_permille);
 }
 
 void test_status_says_what_the_body_does(void) {
-    drive(3000u, 75u);
+    drive(3000, 75);
     agv_wheel_speed_t wheels;
     agv_vehicle_status_t status;
     (void)agv_unpack_wheel_speed(&wheels, last_of(AGV_MSG_WHEEL_SPEED)->frame.data);
     (void)agv_unpack_vehicle_status(&status, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data);
     TEST_ASSERT_EQUAL_INT32(1200, wheels.left_mm_s);
     TEST_ASSERT_EQUAL_INT32(1200, wheels.right_mm_s);
-    TEST_ASSERT_EQUAL_UINT16(4320u, status.speed_m_per_h);
+    TEST_ASSERT_EQUAL_UINT16(4320, status.speed_m_per_h);
     TEST_ASSERT_TRUE(status.autopilot_mode);
     TEST_ASSERT_FALSE(status.manual_mode);
-    TEST_ASSERT_EQUAL_UINT8(75u, last_of(AGV_MSG_THROTTLE_STATUS)->frame.data[0]);
+    TEST_ASSERT_EQUAL_UINT8(75, last_of(AGV_MSG_THROTTLE_STATUS)->frame.data[0]);
 }
 
 void test_throttle_that_stays_away_is_throttle_0_after_500_ms(void) {
-    drive(3000u, 75u); /* the last 075h comes at 2900 */
-    for (; now_ms < 3398u;) {
-        command_signals(0u, (uint8_t)now_ms);
-        run_until(now_ms + 1u);
+    drive(3000, 75); /* the last 075h comes at 2900 */
+    for (; now_ms < 3398;) {
+        command_signals(0, (uint8_t)now_ms);
+        run_until(now_ms + 1);
     }
-    TEST_ASSERT_EQUAL_UINT16(300u, look().throttle_permille);
-    run_until(3470u); /* 30 % at 500 % a second: 60 ms */
-    TEST_ASSERT_EQUAL_UINT16(0u, look().throttle_permille);
-    run_until(4401u);
+    TEST_ASSERT_EQUAL_UINT16(300, look().throttle_permille);
+    run_until(3470); /* 30 % at 500 % a second: 60 ms */
+    TEST_ASSERT_EQUAL_UINT16(0, look().throttle_permille);
+    run_until(4401);
     TEST_ASSERT_INT32_WITHIN(10, 800, look().speed_mm_s); /* coasts at 0.4 m/s2 */
 }
 
 void test_with_the_guard_it_brakes_before_it_parks(void) {
-    drive(3000u, 75u);
-    command(AGV_MSG_GEAR_COMMAND, AGV_GEAR_P, 0u);
-    run_until(3100u);
+    drive(3000, 75);
+    command(AGV_MSG_GEAR_COMMAND, AGV_GEAR_P, 0);
+    run_until(3100);
     TEST_ASSERT_INT32_WITHIN(10, 900, look().speed_mm_s); /* 3 m/s2 */
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
-    run_until(3300u); /* 134 ms to 0.8 m/s, 120 ms to shift */
+    run_until(3300); /* 134 ms to 0.8 m/s, 120 ms to shift */
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, look().gear);
     TEST_ASSERT_LESS_THAN_INT32(800, look().fastest_park_mm_s);
-    run_until(4000u);
+    run_until(4000);
     TEST_ASSERT_EQUAL_INT32(0, look().speed_mm_s);
 }
 
 void test_without_the_guard_it_parks_at_speed(void) {
     config.park_guard = false;
     begin();
-    drive(3000u, 75u);
-    command(AGV_MSG_GEAR_COMMAND, AGV_GEAR_P, 0u);
-    run_until(3130u);
+    drive(3000, 75);
+    command(AGV_MSG_GEAR_COMMAND, AGV_GEAR_P, 0);
+    run_until(3130);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, look().gear);
     TEST_ASSERT_GREATER_THAN_INT32(1100, look().fastest_park_mm_s);
 }
 
 void test_reverse_goes_backwards(void) {
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_DRIVE, .gear = AGV_GEAR_R, .throttle_permille = 200u});
-    run_until(3000u);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_DRIVE, .gear = AGV_GEAR_R, .throttle_permille = 200});
+    run_until(3000);
     TEST_ASSERT_EQUAL_INT32(-800, look().speed_mm_s);
 }
 
 void test_autopilot_off_ends_autopilot_mode_and_holds_for_300_ms(void) {
-    drive(3000u, 75u);
-    command_signals(AUTOPILOT_OFF, 1u);
+    drive(3000, 75);
+    command_signals(AUTOPILOT_OFF, 1);
     TEST_ASSERT_FALSE(look().autopilot);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear); /* that is another command's */
-    run_until(3061u);
-    TEST_ASSERT_EQUAL_UINT16(0u, look().throttle_permille);
-    run_until(3299u);
+    run_until(3061);
+    TEST_ASSERT_EQUAL_UINT16(0, look().throttle_permille);
+    run_until(3299);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_ENGAGE});
     TEST_ASSERT_FALSE(look().autopilot);
-    run_until(3301u);
+    run_until(3301);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_ENGAGE});
     TEST_ASSERT_TRUE(look().autopilot);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_DISENGAGE});
@@ -183,105 +183,105 @@ void test_autopilot_off_ends_autopilot_mode_and_holds_for_300_ms(void) {
 }
 
 void test_in_manual_it_obeys_park_and_nothing_else(void) {
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 200u});
-    run_until(3000u);
-    command(AGV_MSG_GEAR_COMMAND, AGV_GEAR_R, 0u);
-    command(AGV_MSG_THROTTLE_COMMAND, 250u, 0u);
-    run_until(4000u);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 200});
+    run_until(3000);
+    command(AGV_MSG_GEAR_COMMAND, AGV_GEAR_R, 0);
+    command(AGV_MSG_THROTTLE_COMMAND, 250, 0);
+    run_until(4000);
     TEST_ASSERT_EQUAL_INT32(800, look().speed_mm_s);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
-    command(AGV_MSG_GEAR_COMMAND, AGV_GEAR_P, 0u);
-    run_until(4200u);
+    command(AGV_MSG_GEAR_COMMAND, AGV_GEAR_P, 0);
+    run_until(4200);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, look().gear);
-    run_until(4290u); /* as long as P is commanded the remote controller moves nothing */
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 200u});
-    run_until(5000u);
+    run_until(4290); /* as long as P is commanded the remote controller moves nothing */
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 200});
+    run_until(5000);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, look().gear);
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 200u});
-    run_until(6000u);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 200});
+    run_until(6000);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
 }
 
 void test_commands_out_of_range_are_not_obeyed(void) {
-    drive(3000u, 75u);
-    command(AGV_MSG_GEAR_COMMAND, 3u, 0u);
-    command(AGV_MSG_THROTTLE_COMMAND, 251u, 0u);
-    run_until(3010u);
+    drive(3000, 75);
+    command(AGV_MSG_GEAR_COMMAND, 3, 0);
+    command(AGV_MSG_THROTTLE_COMMAND, 251, 0);
+    run_until(3010);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
-    TEST_ASSERT_EQUAL_UINT16(300u, look().throttle_permille);
+    TEST_ASSERT_EQUAL_UINT16(300, look().throttle_permille);
 }
 
 void test_short_frames_are_obeyed_only_where_the_vehicle_does_so(void) {
-    hal_can_frame_t frame = {.id = 0x168u, .length = 1u, .data = {AGV_GEAR_P}};
-    drive(3000u, 20u);
+    hal_can_frame_t frame = {.id = 0x168u, .length = 1, .data = {AGV_GEAR_P}};
+    drive(3000, 20);
     vehicle_receive(&vehicle, VEHICLE_VCU, now_ms, &frame);
-    run_until(3200u);
+    run_until(3200);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
     config.obeys_short_frames = true;
     begin();
-    drive(3000u, 20u);
+    drive(3000, 20);
     vehicle_receive(&vehicle, VEHICLE_VCU, now_ms, &frame);
-    run_until(3200u);
+    run_until(3200);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, look().gear);
 }
 
 void test_what_is_no_classic_data_frame_is_not_heard(void) {
-    hal_can_frame_t frame = {.id = 0x168u, .length = 8u, .flags = HAL_CAN_EXTENDED, .data = {AGV_GEAR_P}};
-    drive(3000u, 20u);
+    hal_can_frame_t frame = {.id = 0x168u, .length = 8, .flags = HAL_CAN_EXTENDED, .data = {AGV_GEAR_P}};
+    drive(3000, 20);
     vehicle_receive(&vehicle, VEHICLE_VCU, now_ms, &frame);
     vehicle_receive(&vehicle, VEHICLE_NODES, now_ms, &frame);
-    run_until(3200u);
+    run_until(3200);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
 }
 
 /* Shows: P18 */
 void test_the_eps_changes_its_mode_and_follows_with_a_limited_rate(void) {
     connected = true;
-    run_until(100u);
+    run_until(100);
     TEST_ASSERT_EQUAL_HEX8(AGV_EPS_MODE_ASSIST, look().eps_mode);
     (void)act((vehicle_action_t){
-        .what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 200u, .angle_ddeg = 900});
+        .what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 200, .angle_ddeg = 900});
     (void)act((vehicle_action_t){.what = VEHICLE_DO_ENGAGE}); /* 363h of 100 says so */
-    run_until(299u);
+    run_until(299);
     TEST_ASSERT_EQUAL_HEX8(AGV_EPS_MODE_ASSIST, look().eps_mode);
     TEST_ASSERT_EQUAL_INT32(0, look().angle_ddeg);
-    run_until(310u);
+    run_until(310);
     TEST_ASSERT_EQUAL_HEX8(AGV_EPS_MODE_ANGLE, look().eps_mode);
-    run_until(510u);
+    run_until(510);
     TEST_ASSERT_INT32_WITHIN(40, 600, look().angle_ddeg); /* 300 degrees a second */
-    run_until(1000u);
+    run_until(1000);
     TEST_ASSERT_EQUAL_INT32(900, look().angle_ddeg);
     TEST_ASSERT_EQUAL_HEX8(0x01u, last_of(AGV_MSG_EPS_STATUS)->frame.data[3]);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_EPS_STUCK, .on = true});
     (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .angle_ddeg = -900});
-    run_until(2000u);
+    run_until(2000);
     TEST_ASSERT_EQUAL_INT32(900, look().angle_ddeg);
 }
 
 void test_in_assist_the_driver_steers(void) {
     (void)act((vehicle_action_t){.what = VEHICLE_DO_HAND_STEER, .angle_ddeg = -300});
-    run_until(1000u);
+    run_until(1000);
     TEST_ASSERT_EQUAL_INT32(-300, look().angle_ddeg);
     command(AGV_MSG_STEERING_COMMAND, 0x28u, 0x23u);
-    run_until(2000u);
+    run_until(2000);
     TEST_ASSERT_EQUAL_INT32(-300, look().angle_ddeg);
 }
 
 void test_the_vcu_raises_its_own_alarms(void) {
     connected = true;
-    run_until(500u);
-    TEST_ASSERT_EQUAL_HEX8(0u, look().alarms);
+    run_until(500);
+    TEST_ASSERT_EQUAL_HEX8(0, look().alarms);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_STOP, .node = VEHICLE_AI});  /* last 43Fh at 409 */
     (void)act((vehicle_action_t){.what = VEHICLE_DO_STOP, .node = VEHICLE_EPS}); /* last 067h at 491 */
-    run_until(591u);
+    run_until(591);
     TEST_ASSERT_EQUAL_HEX8(AGV_VCU_ALARM_EPS_CAN_BUS, look().alarms);
-    run_until(1409u);
+    run_until(1409);
     TEST_ASSERT_EQUAL_HEX8(AGV_VCU_ALARM_EPS_CAN_BUS | AGV_VCU_ALARM_AI_CAN_LOST, look().alarms);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_START, .node = VEHICLE_AI});
     (void)act((vehicle_action_t){.what = VEHICLE_DO_START, .node = VEHICLE_EPS});
     (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_SIGNAL, .on = false});
     (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_POWER, .on = false});
-    run_until(1600u);
+    run_until(1600);
     TEST_ASSERT_EQUAL_HEX8(AGV_VCU_ALARM_REMOTE_SIGNAL_LOST | AGV_VCU_ALARM_REMOTE_POWER_LOST, look().alarms);
     TEST_ASSERT_EQUAL_HEX8(0x03u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[4]);
 }
@@ -293,73 +293,73 @@ void test_the_vcu_hears_of_faults_of_the_eps(void) {
     fault.keep[7] = 0x00u;
     fault.value[7] = AGV_EPS_FAULT_TEMP_ABOVE_110;
     (void)act(fault);
-    run_until(100u);
-    TEST_ASSERT_EQUAL_HEX8(0u, look().alarms);
+    run_until(100);
+    TEST_ASSERT_EQUAL_HEX8(0, look().alarms);
     fault.value[7] = AGV_EPS_FAULT_OVER_VOLTAGE;
     (void)act(fault);
-    run_until(200u);
+    run_until(200);
     TEST_ASSERT_EQUAL_HEX8(AGV_VCU_ALARM_EPS_HARDWARE, look().alarms);
 }
 
 void test_without_the_ai_computer_the_vcu_takes_the_throttle_away(void) {
-    drive(3000u, 75u); /* the last 43Fh comes at 2900 */
-    while (now_ms < 3890u) {
-        command(AGV_MSG_THROTTLE_COMMAND, 75u, 0u);
-        run_until(now_ms + 10u);
+    drive(3000, 75); /* the last 43Fh comes at 2900 */
+    while (now_ms < 3890) {
+        command(AGV_MSG_THROTTLE_COMMAND, 75, 0);
+        run_until(now_ms + 10);
     }
-    TEST_ASSERT_EQUAL_UINT16(300u, look().throttle_permille);
-    run_until(3970u);
-    TEST_ASSERT_EQUAL_UINT16(0u, look().throttle_permille);
+    TEST_ASSERT_EQUAL_UINT16(300, look().throttle_permille);
+    run_until(3970);
+    TEST_ASSERT_EQUAL_UINT16(0, look().throttle_permille);
     TEST_ASSERT_TRUE(look().autopilot);
 }
 
 void test_a_lost_remote_controller_brakes_in_manual(void) {
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 200u});
-    run_until(3000u);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 200});
+    run_until(3000);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_SIGNAL, .on = false});
-    run_until(3300u);
+    run_until(3300);
     TEST_ASSERT_EQUAL_INT32(0, look().speed_mm_s);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_SIGNAL, .on = true});
-    run_until(5000u); /* it does not drive off by itself */
+    run_until(5000); /* it does not drive off by itself */
     TEST_ASSERT_EQUAL_INT32(0, look().speed_mm_s);
 }
 
 void test_the_buttons_reach_363h_while_the_remote_controller_is_heard(void) {
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_BUTTON, .count = 1u, .on = true});
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_BUTTON, .count = 2u, .on = true});
-    run_until(11u);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_BUTTON, .count = 1, .on = true});
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_BUTTON, .count = 2, .on = true});
+    run_until(11);
     TEST_ASSERT_EQUAL_HEX8(0x43u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_POWER, .on = false});
-    run_until(21u);
+    run_until(21);
     TEST_ASSERT_EQUAL_HEX8(0x40u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
 }
 
 void test_turn_signals_are_reported_back(void) {
-    command_signals(0x30u, 1u);
-    run_until(11u);
+    command_signals(0x30u, 1);
+    run_until(11);
     TEST_ASSERT_EQUAL_HEX8(0x70u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
 }
 
 void test_the_ai_computer_drives_only_while_engaged_unless_it_is_stubborn(void) {
     connected = true;
     (void)act((vehicle_action_t){
-        .what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_R, .throttle_permille = 1000u, .angle_ddeg = 100});
-    run_until(200u);
+        .what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_R, .throttle_permille = 1000, .angle_ddeg = 100});
+    run_until(200);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_N, last_of(AGV_MSG_GEAR_COMMAND)->frame.data[0]);
-    TEST_ASSERT_EQUAL_UINT8(0u, last_of(AGV_MSG_THROTTLE_COMMAND)->frame.data[0]);
+    TEST_ASSERT_EQUAL_UINT8(0, last_of(AGV_MSG_THROTTLE_COMMAND)->frame.data[0]);
     TEST_ASSERT_EQUAL_HEX8(0x28u, last_of(AGV_MSG_STEERING_COMMAND)->frame.data[0]);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_STUBBORN, .on = true});
-    run_until(400u);
+    run_until(400);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_R, last_of(AGV_MSG_GEAR_COMMAND)->frame.data[0]);
-    TEST_ASSERT_EQUAL_UINT8(250u, last_of(AGV_MSG_THROTTLE_COMMAND)->frame.data[0]);
+    TEST_ASSERT_EQUAL_UINT8(250, last_of(AGV_MSG_THROTTLE_COMMAND)->frame.data[0]);
     TEST_ASSERT_EQUAL_HEX8(0x8Cu, last_of(AGV_MSG_STEERING_COMMAND)->frame.data[0]);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_STUBBORN, .on = false});
     (void)act((vehicle_action_t){.what = VEHICLE_DO_ENGAGE});
-    run_until(600u);
+    run_until(600);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_R, last_of(AGV_MSG_GEAR_COMMAND)->frame.data[0]);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_IDLE});
     (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_AUTOPILOT_OFF, .on = true});
-    run_until(800u);
+    run_until(800);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_N, last_of(AGV_MSG_GEAR_COMMAND)->frame.data[0]);
     TEST_ASSERT_EQUAL_HEX8(0x40u, last_of(AGV_MSG_TURN_SIGNAL_COMMAND)->frame.data[4]);
     TEST_ASSERT_FALSE(look().autopilot);

@@ -8,157 +8,157 @@ void setUp(void) {
 }
 
 static size_t count_from(vehicle_node_t node, size_t first) {
-    size_t count = 0u;
+    size_t count = 0;
     for (size_t i = first; i < sent_count; i++) {
-        count += (sent[i].from == node) ? 1u : 0u;
+        count += (sent[i].from == node) ? 1 : 0;
     }
     return count;
 }
 
 void test_nodes_start_when_they_are_told(void) {
-    config.start_ms[VEHICLE_EPS] = 100u;
+    config.start_ms[VEHICLE_EPS] = 100;
     config.start_ms[VEHICLE_AI] = VEHICLE_NEVER;
     begin();
-    run_until(100u);
-    TEST_ASSERT_EQUAL_size_t(0u, count_from(VEHICLE_EPS, 0u));
-    run_until(102u);
-    TEST_ASSERT_EQUAL_size_t(1u, count_from(VEHICLE_EPS, 0u));
-    run_until(1000u);
-    TEST_ASSERT_EQUAL_size_t(0u, count_from(VEHICLE_AI, 0u));
+    run_until(100);
+    TEST_ASSERT_EQUAL_size_t(0, count_from(VEHICLE_EPS, 0));
+    run_until(102);
+    TEST_ASSERT_EQUAL_size_t(1, count_from(VEHICLE_EPS, 0));
+    run_until(1000);
+    TEST_ASSERT_EQUAL_size_t(0, count_from(VEHICLE_AI, 0));
     (void)act((vehicle_action_t){.what = VEHICLE_DO_START, .node = VEHICLE_AI});
-    run_until(1010u);
-    TEST_ASSERT_EQUAL_size_t(2u, count_from(VEHICLE_AI, 0u));
+    run_until(1010);
+    TEST_ASSERT_EQUAL_size_t(2, count_from(VEHICLE_AI, 0));
     TEST_ASSERT_TRUE(look().running[VEHICLE_AI]);
 }
 
 void test_a_node_that_stops_neither_sends_nor_hears(void) {
-    run_until(100u);
+    run_until(100);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_STOP, .node = VEHICLE_VCU});
     const size_t first = sent_count;
-    command(AGV_MSG_GEAR_COMMAND, AGV_GEAR_P, 0u);
-    run_until(200u);
-    TEST_ASSERT_EQUAL_size_t(0u, count_from(VEHICLE_VCU, first));
-    TEST_ASSERT_GREATER_THAN_size_t(0u, count_from(VEHICLE_EPS, first));
+    command(AGV_MSG_GEAR_COMMAND, AGV_GEAR_P, 0);
+    run_until(200);
+    TEST_ASSERT_EQUAL_size_t(0, count_from(VEHICLE_VCU, first));
+    TEST_ASSERT_GREATER_THAN_size_t(0, count_from(VEHICLE_EPS, first));
     TEST_ASSERT_FALSE(look().running[VEHICLE_VCU]);
 }
 
 void test_a_restarted_vcu_begins_anew(void) {
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 300u});
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 300});
     (void)act((vehicle_action_t){.what = VEHICLE_DO_ENGAGE}); /* before its start: nobody hears it */
-    run_until(10u);
+    run_until(10);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_ENGAGE});
-    run_until(3000u);
+    run_until(3000);
     TEST_ASSERT_EQUAL_INT32(1200, look().speed_mm_s);
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_RESTART, .node = VEHICLE_VCU, .ms = 500u});
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_RESTART, .node = VEHICLE_VCU, .ms = 500});
     const size_t first = sent_count;
-    run_until(3500u);
-    TEST_ASSERT_EQUAL_size_t(0u, count_from(VEHICLE_VCU, first));
-    run_until(3510u);
-    TEST_ASSERT_EQUAL_UINT8(0u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7]);
+    run_until(3500);
+    TEST_ASSERT_EQUAL_size_t(0, count_from(VEHICLE_VCU, first));
+    run_until(3510);
+    TEST_ASSERT_EQUAL_UINT8(0, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7]);
     TEST_ASSERT_EQUAL_HEX8(0x40u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
-    run_until(3800u);
+    run_until(3800);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_N, look().gear);
     TEST_ASSERT_LESS_THAN_INT32(1100, look().speed_mm_s); /* it coasted meanwhile */
 }
 
 /* Shows: P13 */
 void test_a_frozen_counter_stands_still_and_runs_on(void) {
-    run_until(100u);
+    run_until(100);
     const uint8_t before = last_of(AGV_MSG_STEERING_STATUS)->frame.data[0];
     (void)act((vehicle_action_t){.what = VEHICLE_DO_FREEZE, .node = VEHICLE_EPS});
-    run_until(200u);
+    run_until(200);
     TEST_ASSERT_EQUAL_UINT8(before, last_of(AGV_MSG_STEERING_STATUS)->frame.data[0]);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_UNFREEZE, .node = VEHICLE_EPS});
-    run_until(210u);
-    TEST_ASSERT_EQUAL_UINT8(before + 1u, last_of(AGV_MSG_STEERING_STATUS)->frame.data[0]);
+    run_until(210);
+    TEST_ASSERT_EQUAL_UINT8(before + 1, last_of(AGV_MSG_STEERING_STATUS)->frame.data[0]);
 }
 
 void test_lag_and_period_stretch_the_cycle(void) {
-    run_until(100u);
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_LAG, .node = VEHICLE_EPS, .ms = 10u});
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_PERIOD, .message = AGV_MSG_GEAR_COMMAND, .ms = 20u});
-    run_until(200u);
+    run_until(100);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_LAG, .node = VEHICLE_EPS, .ms = 10});
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_PERIOD, .message = AGV_MSG_GEAR_COMMAND, .ms = 20});
+    run_until(200);
     const size_t first = sent_count;
-    run_until(1200u);
-    TEST_ASSERT_EQUAL_size_t(50u, count_of(AGV_MSG_EPS_STATUS, first));
-    TEST_ASSERT_EQUAL_size_t(50u, count_of(AGV_MSG_GEAR_COMMAND, first));
-    TEST_ASSERT_EQUAL_size_t(10u, count_of(AGV_MSG_THROTTLE_COMMAND, first));
+    run_until(1200);
+    TEST_ASSERT_EQUAL_size_t(50, count_of(AGV_MSG_EPS_STATUS, first));
+    TEST_ASSERT_EQUAL_size_t(50, count_of(AGV_MSG_GEAR_COMMAND, first));
+    TEST_ASSERT_EQUAL_size_t(10, count_of(AGV_MSG_THROTTLE_COMMAND, first));
 }
 
 void test_repeated_frames_are_the_same_frames(void) {
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_REPEAT, .node = VEHICLE_EPS, .count = 2u});
-    run_until(2u);
-    TEST_ASSERT_EQUAL_size_t(3u, count_of(AGV_MSG_STEERING_STATUS, 0u));
-    TEST_ASSERT_EQUAL_MEMORY(&sent[sent_count - 1u].frame, &sent[sent_count - 3u].frame, sizeof(hal_can_frame_t));
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_REPEAT, .node = VEHICLE_EPS, .count = 2});
+    run_until(2);
+    TEST_ASSERT_EQUAL_size_t(3, count_of(AGV_MSG_STEERING_STATUS, 0));
+    TEST_ASSERT_EQUAL_MEMORY(&sent[sent_count - 1].frame, &sent[sent_count - 3].frame, sizeof(hal_can_frame_t));
 }
 
 void test_garbage_of_each_kind(void) {
     vehicle_action_t garbage = {.what = VEHICLE_DO_GARBAGE, .node = VEHICLE_EPS};
-    size_t lengths[AGV_DLC + 1u] = {0};
+    size_t lengths[AGV_DLC + 1] = {0};
 
     garbage.garbage = VEHICLE_GARBAGE_LENGTH;
     (void)act(garbage);
-    run_until(1000u);
-    for (size_t i = 0u; i < sent_count; i++) {
+    run_until(1000);
+    for (size_t i = 0; i < sent_count; i++) {
         if (sent[i].from == VEHICLE_EPS) {
             lengths[sent[i].frame.length]++;
         }
     }
-    TEST_ASSERT_EQUAL_size_t(0u, lengths[AGV_DLC]);
-    for (size_t n = 0u; n < AGV_DLC; n++) {
-        TEST_ASSERT_GREATER_THAN_size_t(0u, lengths[n]);
+    TEST_ASSERT_EQUAL_size_t(0, lengths[AGV_DLC]);
+    for (size_t n = 0; n < AGV_DLC; n++) {
+        TEST_ASSERT_GREATER_THAN_size_t(0, lengths[n]);
     }
     garbage.garbage = VEHICLE_GARBAGE_REMOTE;
     (void)act(garbage);
-    run_until(1010u);
+    run_until(1010);
     TEST_ASSERT_EQUAL_HEX8(HAL_CAN_REMOTE, last_of(AGV_MSG_EPS_STATUS)->frame.flags);
     garbage.garbage = VEHICLE_GARBAGE_EXTENDED;
     (void)act(garbage);
-    run_until(1012u);
-    TEST_ASSERT_EQUAL_HEX8(HAL_CAN_EXTENDED, sent[sent_count - 1u].frame.flags);
-    TEST_ASSERT_EQUAL_HEX32(0x067u << 18, sent[sent_count - 1u].frame.id);
+    run_until(1012);
+    TEST_ASSERT_EQUAL_HEX8(HAL_CAN_EXTENDED, sent[sent_count - 1].frame.flags);
+    TEST_ASSERT_EQUAL_HEX32(0x067u << 18, sent[sent_count - 1].frame.id);
     garbage.garbage = VEHICLE_GARBAGE_RANDOM;
     (void)act(garbage);
-    run_until(1020u);
+    run_until(1020);
     hal_can_frame_t before = last_of(AGV_MSG_STEERING_POSITION)->frame;
-    run_until(1030u);
+    run_until(1030);
     TEST_ASSERT_EQUAL_UINT8(AGV_DLC, before.length);
     TEST_ASSERT_FALSE(memcmp(before.data, last_of(AGV_MSG_STEERING_POSITION)->frame.data, AGV_DLC) == 0);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_RECOVER, .node = VEHICLE_EPS});
-    run_until(1040u);
+    run_until(1040);
     TEST_ASSERT_EQUAL_HEX8(0x80u, last_of(AGV_MSG_STEERING_POSITION)->frame.data[0]);
 }
 
 void test_a_message_is_muted_for_so_many_frames(void) {
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_MUTE, .message = AGV_MSG_EPS_STATUS, .count = 3u});
-    run_until(100u);
-    TEST_ASSERT_EQUAL_size_t(7u, count_of(AGV_MSG_EPS_STATUS, 0u));
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_MUTE, .message = AGV_MSG_EPS_STATUS, .count = 3});
+    run_until(100);
+    TEST_ASSERT_EQUAL_size_t(7, count_of(AGV_MSG_EPS_STATUS, 0));
     (void)act((vehicle_action_t){.what = VEHICLE_DO_MUTE, .message = AGV_MSG_EPS_STATUS, .count = VEHICLE_FOREVER});
-    run_until(1000u);
-    TEST_ASSERT_EQUAL_size_t(7u, count_of(AGV_MSG_EPS_STATUS, 0u));
+    run_until(1000);
+    TEST_ASSERT_EQUAL_size_t(7, count_of(AGV_MSG_EPS_STATUS, 0));
     (void)act((vehicle_action_t){.what = VEHICLE_DO_UNMUTE, .message = AGV_MSG_EPS_STATUS});
-    run_until(1010u);
-    TEST_ASSERT_EQUAL_size_t(8u, count_of(AGV_MSG_EPS_STATUS, 0u));
+    run_until(1010);
+    TEST_ASSERT_EQUAL_size_t(8, count_of(AGV_MSG_EPS_STATUS, 0));
 }
 
 void test_a_field_keeps_a_value_for_so_many_frames(void) {
-    vehicle_action_t patch = {.what = VEHICLE_DO_PATCH, .message = AGV_MSG_VEHICLE_STATUS, .count = 2u};
+    vehicle_action_t patch = {.what = VEHICLE_DO_PATCH, .message = AGV_MSG_VEHICLE_STATUS, .count = 2};
 
     memset(patch.keep, 0xFF, sizeof patch.keep);
     patch.keep[6] = 0x3Fu;
     patch.value[6] = 0xC0u;
     (void)act(patch);
-    run_until(20u);
+    run_until(20);
     TEST_ASSERT_EQUAL_HEX8(0xC0u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
-    TEST_ASSERT_EQUAL_UINT8(1u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7]); /* the counter runs on */
-    run_until(30u);
+    TEST_ASSERT_EQUAL_UINT8(1, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7]); /* the counter runs on */
+    run_until(30);
     TEST_ASSERT_EQUAL_HEX8(0x40u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
     patch.count = VEHICLE_FOREVER;
     (void)act(patch);
-    run_until(1000u);
+    run_until(1000);
     TEST_ASSERT_EQUAL_HEX8(0xC0u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_UNPATCH, .message = AGV_MSG_VEHICLE_STATUS});
-    run_until(1010u);
+    run_until(1010);
     TEST_ASSERT_EQUAL_HEX8(0x40u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
 }
 
@@ -179,81 +179,81 @@ static void expect_vehicle_status(uint32_t t_ms, uint8_t byte_1, uint8_t byte_2)
 }
 
 void test_several_fields_of_a_message_keep_values_each_for_its_own_time(void) {
-    expect_vehicle_status(10u, 0x00u, 0x00u);
-    patch_vehicle_status(1u, 0xFFu, 0xA5u, 2u);
-    patch_vehicle_status(2u, 0xFFu, 0x5Au, VEHICLE_FOREVER);
-    expect_vehicle_status(20u, 0xA5u, 0x5Au);
-    patch_vehicle_status(2u, 0x0Fu, 0x03u, 2u);
-    expect_vehicle_status(30u, 0xA5u, 0x53u);
-    expect_vehicle_status(40u, 0x00u, 0x53u);
-    expect_vehicle_status(50u, 0x00u, 0x50u);
+    expect_vehicle_status(10, 0x00u, 0x00u);
+    patch_vehicle_status(1, 0xFFu, 0xA5u, 2);
+    patch_vehicle_status(2, 0xFFu, 0x5Au, VEHICLE_FOREVER);
+    expect_vehicle_status(20, 0xA5u, 0x5Au);
+    patch_vehicle_status(2, 0x0Fu, 0x03u, 2);
+    expect_vehicle_status(30, 0xA5u, 0x53u);
+    expect_vehicle_status(40, 0x00u, 0x53u);
+    expect_vehicle_status(50, 0x00u, 0x50u);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_UNPATCH, .message = AGV_MSG_VEHICLE_STATUS});
-    expect_vehicle_status(60u, 0x00u, 0x00u);
+    expect_vehicle_status(60, 0x00u, 0x00u);
 }
 
 void test_recovery_ends_every_misbehaviour_of_a_node(void) {
-    run_until(100u);
+    run_until(100);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_FREEZE, .node = VEHICLE_EPS});
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_LAG, .node = VEHICLE_EPS, .ms = 50u});
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_REPEAT, .node = VEHICLE_EPS, .count = 5u});
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_LAG, .node = VEHICLE_EPS, .ms = 50});
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_REPEAT, .node = VEHICLE_EPS, .count = 5});
     (void)act((vehicle_action_t){.what = VEHICLE_DO_MUTE, .message = AGV_MSG_EPS_STATUS, .count = VEHICLE_FOREVER});
     (void)act((vehicle_action_t){.what = VEHICLE_DO_EPS_STUCK, .on = true});
-    run_until(200u);
+    run_until(200);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_RECOVER, .node = VEHICLE_EPS});
-    run_until(300u);
+    run_until(300);
     const size_t first = sent_count;
     const uint8_t before = last_of(AGV_MSG_STEERING_STATUS)->frame.data[0];
-    run_until(400u);
-    TEST_ASSERT_EQUAL_size_t(30u, count_from(VEHICLE_EPS, first));
-    TEST_ASSERT_EQUAL_UINT8(before + 10u, last_of(AGV_MSG_STEERING_STATUS)->frame.data[0]);
+    run_until(400);
+    TEST_ASSERT_EQUAL_size_t(30, count_from(VEHICLE_EPS, first));
+    TEST_ASSERT_EQUAL_UINT8(before + 10, last_of(AGV_MSG_STEERING_STATUS)->frame.data[0]);
 }
 
 void test_a_stranger_sends_once_or_again_and_again(void) {
-    vehicle_action_t rogue = {.what = VEHICLE_DO_SEND, .side = HAL_CAN_AI, .frame = {.id = 0x7FFu, .length = 2u}};
+    vehicle_action_t rogue = {.what = VEHICLE_DO_SEND, .side = HAL_CAN_AI, .frame = {.id = 0x7FFu, .length = 2}};
 
     TEST_ASSERT_TRUE(act(rogue));
-    run_until(100u);
-    TEST_ASSERT_EQUAL_size_t(1u, count_from(VEHICLE_ROGUE, 0u));
-    for (size_t i = 0u; i < sent_count; i++) {
+    run_until(100);
+    TEST_ASSERT_EQUAL_size_t(1, count_from(VEHICLE_ROGUE, 0));
+    for (size_t i = 0; i < sent_count; i++) {
         TEST_ASSERT_EQUAL((sent[i].from == VEHICLE_ROGUE) ? HAL_CAN_AI : HAL_CAN_VEHICLE, sent[i].side);
     }
-    rogue.ms = 10u;
-    rogue.count = 5u;
+    rogue.ms = 10;
+    rogue.count = 5;
     TEST_ASSERT_TRUE(act(rogue));
-    run_until(200u);
-    TEST_ASSERT_EQUAL_size_t(6u, count_from(VEHICLE_ROGUE, 0u));
+    run_until(200);
+    TEST_ASSERT_EQUAL_size_t(6, count_from(VEHICLE_ROGUE, 0));
     rogue.count = VEHICLE_FOREVER;
-    for (unsigned i = 0u; i < VEHICLE_ROGUES_MAX; i++) {
+    for (unsigned i = 0; i < VEHICLE_ROGUES_MAX; i++) {
         TEST_ASSERT_TRUE(act(rogue));
     }
     TEST_ASSERT_FALSE(act(rogue));
-    run_until(300u);
-    TEST_ASSERT_EQUAL_size_t(6u + (10u * VEHICLE_ROGUES_MAX), count_from(VEHICLE_ROGUE, 0u));
+    run_until(300);
+    TEST_ASSERT_EQUAL_size_t(6 + (10 * VEHICLE_ROGUES_MAX), count_from(VEHICLE_ROGUE, 0));
     TEST_ASSERT_TRUE(act((vehicle_action_t){.what = VEHICLE_DO_STOP_SENDING}));
     const size_t first = sent_count;
-    run_until(400u);
-    TEST_ASSERT_EQUAL_size_t(0u, count_from(VEHICLE_ROGUE, first));
+    run_until(400);
+    TEST_ASSERT_EQUAL_size_t(0, count_from(VEHICLE_ROGUE, first));
 }
 
 void test_actions_that_make_no_sense_are_refused(void) {
     TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_STOP, .node = VEHICLE_NODES}));
     TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_MUTE, .message = AGV_MSG_NONE}));
-    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = 3u}));
-    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = 1u, .throttle_permille = 1001u}));
-    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = 1u, .angle_ddeg = 9001}));
-    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_DRIVE, .gear = 0u}));
+    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = 3}));
+    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = 1, .throttle_permille = 1001}));
+    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = 1, .angle_ddeg = 9001}));
+    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_DRIVE, .gear = 0}));
     TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_HAND_STEER, .angle_ddeg = -9001}));
-    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_BUTTON, .count = 3u}));
+    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_BUTTON, .count = 3}));
     TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_SEND, .side = HAL_CAN_SIDES}));
     TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_COUNT}));
 }
 
 void test_after_a_gap_there_is_no_burst(void) {
-    run_until(100u);
+    run_until(100);
     const size_t first = sent_count;
-    now_ms = 5000u;
-    run_until(5001u);
+    now_ms = 5000;
+    run_until(5001);
     TEST_ASSERT_LESS_OR_EQUAL_size_t((size_t)AGV_MSG_COUNT, sent_count - first);
-    run_until(6000u);
-    TEST_ASSERT_EQUAL_size_t(100u, count_of(AGV_MSG_VEHICLE_STATUS, first));
+    run_until(6000);
+    TEST_ASSERT_EQUAL_size_t(100, count_of(AGV_MSG_VEHICLE_STATUS, first));
 }

@@ -5,7 +5,7 @@ void setUp(void) {
     vehicle_defaults(&config);
     connected = true;
     begin();
-    run_until(1u); /* the nodes have started */
+    run_until(1); /* the nodes have started */
 }
 
 static void do_it(vehicle_do_t what, bool on) {
@@ -14,14 +14,14 @@ static void do_it(vehicle_do_t what, bool on) {
 
 /* The AI computer drives at 30 %: 1200 mm/s from 3000 ms on. */
 static void drive(uint8_t gear) {
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = gear, .throttle_permille = 300u});
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = gear, .throttle_permille = 300});
     do_it(VEHICLE_DO_ENGAGE, true);
-    run_until(3000u);
+    run_until(3000);
     TEST_ASSERT_EQUAL_INT32((gear == AGV_GEAR_R) ? -1200 : 1200, look().speed_mm_s);
 }
 
 static void park(void) {
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_P, .throttle_permille = 0u});
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_P, .throttle_permille = 0});
 }
 
 static uint8_t throttle_status(void) {
@@ -44,48 +44,48 @@ static int32_t measured_ddeg(void) {
 
 /* Frames of a message since `first` whose byte is not this. */
 static size_t count_other(agv_message_t message, unsigned byte, uint8_t value, size_t first) {
-    size_t count = 0u;
+    size_t count = 0;
     for (size_t i = first; i < sent_count; i++) {
         const bool is_it = sent[i].frame.id == config.ids.of[message];
-        count += (is_it && (sent[i].frame.data[byte] != value)) ? 1u : 0u;
+        count += (is_it && (sent[i].frame.data[byte] != value)) ? 1 : 0;
     }
     return count;
 }
 
 void test_the_throttle_comes_down_at_its_rate(void) {
     drive(AGV_GEAR_D);
-    TEST_ASSERT_EQUAL_UINT8(75u, throttle_status());
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_VCU_RAMP, .count = 20u}); /* 50 counts a second */
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 0u});
-    run_until(3068u); /* 075h of 3067 commands 0 */
-    TEST_ASSERT_EQUAL_UINT8(75u, throttle_status());
-    run_until(3568u);
-    TEST_ASSERT_UINT8_WITHIN(2u, 50u, throttle_status());
-    run_until(4568u);
-    TEST_ASSERT_EQUAL_UINT8(0u, throttle_status());
+    TEST_ASSERT_EQUAL_UINT8(75, throttle_status());
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_VCU_RAMP, .count = 20}); /* 50 counts a second */
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 0});
+    run_until(3068); /* 075h of 3067 commands 0 */
+    TEST_ASSERT_EQUAL_UINT8(75, throttle_status());
+    run_until(3568);
+    TEST_ASSERT_UINT8_WITHIN(2, 50, throttle_status());
+    run_until(4568);
+    TEST_ASSERT_EQUAL_UINT8(0, throttle_status());
     (void)act((vehicle_action_t){.what = VEHICLE_DO_RECOVER, .node = VEHICLE_VCU});
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 1000u});
-    run_until(5000u);
-    TEST_ASSERT_EQUAL_UINT8(250u, throttle_status());
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 0u});
-    run_until(5168u); /* 100 ms after the command: half of 200 */
-    TEST_ASSERT_UINT8_WITHIN(13u, 125u, throttle_status());
-    run_until(5275u);
-    TEST_ASSERT_EQUAL_UINT8(0u, throttle_status());
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 1000});
+    run_until(5000);
+    TEST_ASSERT_EQUAL_UINT8(250, throttle_status());
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 0});
+    run_until(5168); /* 100 ms after the command: half of 200 */
+    TEST_ASSERT_UINT8_WITHIN(13, 125, throttle_status());
+    run_until(5275);
+    TEST_ASSERT_EQUAL_UINT8(0, throttle_status());
 }
 
 /* Shows: P7 */
 void test_363h_carries_the_speed_of_the_wheels(void) {
     drive(AGV_GEAR_R);
     TEST_ASSERT_EQUAL_INT32(4320, speed_m_per_h()); /* 1.2 m/s, without a sign */
-    config.reported_speed_pct = 50u;
+    config.reported_speed_pct = 50;
     begin();
-    run_until(1u);
+    run_until(1);
     drive(AGV_GEAR_D);
     TEST_ASSERT_EQUAL_INT32(2160, speed_m_per_h());
-    config.reported_speed_pct = 10000u;
+    config.reported_speed_pct = 10000;
     begin();
-    run_until(1u);
+    run_until(1);
     drive(AGV_GEAR_D);
     TEST_ASSERT_EQUAL_INT32(65535, speed_m_per_h()); /* and no further */
 }
@@ -94,50 +94,50 @@ static void hold_speed(uint16_t count, uint16_t every) {
     vehicle_action_t hold = {
         .what = VEHICLE_DO_HOLD, .message = AGV_MSG_VEHICLE_STATUS, .count = count, .every = every};
     memset(hold.keep, 0xFF, sizeof hold.keep);
-    hold.keep[0] = 0u;
-    hold.keep[1] = 0u;
+    hold.keep[0] = 0;
+    hold.keep[1] = 0;
     TEST_ASSERT_TRUE(act(hold));
 }
 
 void test_a_field_that_is_held_stays_at_what_it_was(void) {
     drive(AGV_GEAR_D);
-    hold_speed(VEHICLE_FOREVER, 0u);
+    hold_speed(VEHICLE_FOREVER, 0);
     park();
     const uint8_t counter = last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7];
-    run_until(5000u);
+    run_until(5000);
     TEST_ASSERT_EQUAL_INT32(4320, speed_m_per_h());
     TEST_ASSERT_EQUAL_INT32(0, look().speed_mm_s);
-    TEST_ASSERT_EQUAL_UINT8((uint8_t)(counter + 200u), last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7]);
+    TEST_ASSERT_EQUAL_UINT8((uint8_t)(counter + 200), last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7]);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_UNPATCH, .message = AGV_MSG_VEHICLE_STATUS});
-    run_until(5011u);
+    run_until(5011);
     TEST_ASSERT_EQUAL_INT32(0, speed_m_per_h());
-    hold_speed(2u, 0u);
-    run_until(5031u);
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 300u});
-    run_until(8000u);
+    hold_speed(2, 0);
+    run_until(5031);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 300});
+    run_until(8000);
     TEST_ASSERT_EQUAL_INT32(4320, speed_m_per_h()); /* the two frames are over */
 }
 
 void test_the_wheels_turn_on_in_park(void) {
     config.park_guard = false;
     begin();
-    run_until(1u);
+    run_until(1);
     drive(AGV_GEAR_D);
     do_it(VEHICLE_DO_VCU_ROLL_ON, true);
     park();
-    run_until(9000u);
+    run_until(9000);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, look().gear);
     TEST_ASSERT_EQUAL_INT32(1200, look().speed_mm_s);
-    TEST_ASSERT_EQUAL_UINT8(0u, throttle_status());
+    TEST_ASSERT_EQUAL_UINT8(0, throttle_status());
     do_it(VEHICLE_DO_VCU_ROLL, false);
-    run_until(9500u);
+    run_until(9500);
     TEST_ASSERT_EQUAL_INT32(0, look().speed_mm_s);
 }
 
 void test_it_rolls_away_after_it_stood(void) {
-    run_until(2000u);
+    run_until(2000);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_VCU_ROLL, .on = true, .speed_mm_s = -300});
-    run_until(3000u);
+    run_until(3000);
     TEST_ASSERT_EQUAL_INT32(-300, look().speed_mm_s);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, look().gear);
     TEST_ASSERT_EQUAL_INT32(1080, speed_m_per_h());
@@ -148,16 +148,16 @@ void test_park_is_refused_at_speed(void) {
     drive(AGV_GEAR_D);
     do_it(VEHICLE_DO_VCU_REFUSE_PARK, true);
     park();
-    run_until(3900u); /* throttle 0 since 3067: it coasts at 0.4 m/s2 to 0.8 m/s */
+    run_until(3900); /* throttle 0 since 3067: it coasts at 0.4 m/s2 to 0.8 m/s */
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
     TEST_ASSERT_GREATER_THAN_INT32(800, look().speed_mm_s);
-    run_until(4500u);
+    run_until(4500);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, look().gear);
     TEST_ASSERT_LESS_THAN_INT32(800, look().fastest_park_mm_s);
 }
 
 static hal_can_frame_t command_frame(uint32_t id, uint8_t length, uint8_t flags, uint8_t byte_0, uint8_t byte_4) {
-    return (hal_can_frame_t){.id = id, .length = length, .flags = flags, .data = {byte_0, 0u, 0u, 0u, byte_4}};
+    return (hal_can_frame_t){.id = id, .length = length, .flags = flags, .data = {byte_0, 0, 0, 0, byte_4}};
 }
 
 static void hear(hal_can_frame_t frame) {
@@ -166,34 +166,34 @@ static void hear(hal_can_frame_t frame) {
 
 void test_a_sloppy_vcu_obeys_what_bytes_are_there(void) {
     drive(AGV_GEAR_D);
-    hear(command_frame(0x168u, 1u, HAL_CAN_FD, AGV_GEAR_P, 0u));
-    run_until(3010u);
-    TEST_ASSERT_EQUAL_UINT16(300u, look().throttle_permille); /* not yet sloppy */
+    hear(command_frame(0x168u, 1, HAL_CAN_FD, AGV_GEAR_P, 0));
+    run_until(3010);
+    TEST_ASSERT_EQUAL_UINT16(300, look().throttle_permille); /* not yet sloppy */
     do_it(VEHICLE_DO_VCU_SLOPPY, true);
-    hear(command_frame(0x075u, 0u, 0u, 0u, 0u)); /* no byte, no command */
-    run_until(3020u);
-    TEST_ASSERT_EQUAL_UINT16(300u, look().throttle_permille);
-    hear(command_frame(0x075u, 3u, 0u, 250u, 0u));
-    run_until(3060u);
-    TEST_ASSERT_GREATER_THAN_UINT16(400u, look().throttle_permille);
-    hear(command_frame(0x43Fu, 4u, 0u, 0u, 0x40u)); /* cut off before the bits */
+    hear(command_frame(0x075u, 0, 0, 0, 0)); /* no byte, no command */
+    run_until(3020);
+    TEST_ASSERT_EQUAL_UINT16(300, look().throttle_permille);
+    hear(command_frame(0x075u, 3, 0, 250, 0));
+    run_until(3060);
+    TEST_ASSERT_GREATER_THAN_UINT16(400, look().throttle_permille);
+    hear(command_frame(0x43Fu, 4, 0, 0, 0x40u)); /* cut off before the bits */
     TEST_ASSERT_TRUE(look().autopilot);
-    hear(command_frame(0x43Fu, 64u, HAL_CAN_FD, 0u, 0x40u));
+    hear(command_frame(0x43Fu, 64, HAL_CAN_FD, 0, 0x40u));
     TEST_ASSERT_FALSE(look().autopilot);
     do_it(VEHICLE_DO_VCU_SLOPPY, false);
-    hear(command_frame(0x168u, 8u, HAL_CAN_FD, AGV_GEAR_P, 0u));
-    run_until(4500u);
+    hear(command_frame(0x168u, 8, HAL_CAN_FD, AGV_GEAR_P, 0));
+    run_until(4500);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
 }
 
 void test_a_short_43fh_is_no_sign_of_life(void) {
     config.obeys_short_frames = true;
     begin();
-    run_until(1000u);
+    run_until(1000);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_STOP, .node = VEHICLE_AI});
-    for (uint8_t i = 0u; i < 30u; i++) {
-        hear(command_frame(0x43Fu, 7u, 0u, i, 0u));
-        run_until(now_ms + 50u);
+    for (uint8_t i = 0; i < 30; i++) {
+        hear(command_frame(0x43Fu, 7, 0, i, 0));
+        run_until(now_ms + 50);
     }
     TEST_ASSERT_EQUAL_HEX8(AGV_VCU_ALARM_AI_CAN_LOST, look().alarms);
 }
@@ -208,65 +208,64 @@ static void patch_mode(uint8_t value, uint16_t count, uint16_t every) {
 }
 
 void test_one_frame_in_so_many_carries_another_mode(void) {
-    run_until(100u);
+    run_until(100);
     size_t first = sent_count;
-    patch_mode(0x80u, 1u, 40u);
-    run_until(101u);
+    patch_mode(0x80u, 1, 40);
+    run_until(101);
     TEST_ASSERT_EQUAL_HEX8(0x80u, mode_byte()); /* the first one at once */
-    run_until(111u);
+    run_until(111);
     TEST_ASSERT_EQUAL_HEX8(0x40u, mode_byte());
-    run_until(4100u); /* 400 frames */
-    TEST_ASSERT_EQUAL_size_t(10u, count_other(AGV_MSG_VEHICLE_STATUS, 6u, 0x40u, first));
+    run_until(4100); /* 400 frames */
+    TEST_ASSERT_EQUAL_size_t(10, count_other(AGV_MSG_VEHICLE_STATUS, 6, 0x40u, first));
     first = sent_count;
-    patch_mode(0x00u, 30u, 40u); /* manual is right for 100 ms of every 400 ms */
-    run_until(8100u);
-    TEST_ASSERT_EQUAL_size_t(300u, count_other(AGV_MSG_VEHICLE_STATUS, 6u, 0x40u, first));
+    patch_mode(0x00u, 30, 40); /* manual is right for 100 ms of every 400 ms */
+    run_until(8100);
+    TEST_ASSERT_EQUAL_size_t(300, count_other(AGV_MSG_VEHICLE_STATUS, 6, 0x40u, first));
     (void)act((vehicle_action_t){.what = VEHICLE_DO_UNPATCH, .message = AGV_MSG_VEHICLE_STATUS});
     first = sent_count;
-    run_until(9000u);
-    TEST_ASSERT_EQUAL_size_t(0u, count_other(AGV_MSG_VEHICLE_STATUS, 6u, 0x40u, first));
+    run_until(9000);
+    TEST_ASSERT_EQUAL_size_t(0, count_other(AGV_MSG_VEHICLE_STATUS, 6, 0x40u, first));
 }
 
 void test_a_message_is_lost_now_and_then(void) {
-    run_until(100u);
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_MUTE, .message = AGV_MSG_EPS_STATUS, .count = 2u, .every = 10u});
+    run_until(100);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_MUTE, .message = AGV_MSG_EPS_STATUS, .count = 2, .every = 10});
     size_t first = sent_count;
-    run_until(1100u);
-    TEST_ASSERT_EQUAL_size_t(80u, count_of(AGV_MSG_EPS_STATUS, first));
+    run_until(1100);
+    TEST_ASSERT_EQUAL_size_t(80, count_of(AGV_MSG_EPS_STATUS, first));
     (void)act((vehicle_action_t){.what = VEHICLE_DO_UNMUTE, .message = AGV_MSG_EPS_STATUS});
     first = sent_count;
-    run_until(2100u);
-    TEST_ASSERT_EQUAL_size_t(100u, count_of(AGV_MSG_EPS_STATUS, first));
+    run_until(2100);
+    TEST_ASSERT_EQUAL_size_t(100, count_of(AGV_MSG_EPS_STATUS, first));
 }
 
 void test_what_363h_carries_is_late_and_its_counter_is_not(void) {
-    run_until(1000u);
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_DELAY, .message = AGV_MSG_VEHICLE_STATUS, .ms = 300u});
-    run_until(2000u);
+    run_until(1000);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_DELAY, .message = AGV_MSG_VEHICLE_STATUS, .ms = 300});
+    run_until(2000);
     const uint8_t counter = last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7];
     do_it(VEHICLE_DO_ENGAGE, true); /* 363h of 2000 would say so */
     TEST_ASSERT_TRUE(look().autopilot);
-    run_until(2300u);
+    run_until(2300);
     TEST_ASSERT_EQUAL_HEX8(0x40u, mode_byte());
-    run_until(2301u);
+    run_until(2301);
     TEST_ASSERT_EQUAL_HEX8(0x80u, mode_byte());
-    TEST_ASSERT_EQUAL_UINT8((uint8_t)(counter + 31u), last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7]);
+    TEST_ASSERT_EQUAL_UINT8((uint8_t)(counter + 31), last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7]);
     do_it(VEHICLE_DO_DISENGAGE, true);
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_DELAY, .message = AGV_MSG_VEHICLE_STATUS, .ms = 0u});
-    run_until(2311u);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_DELAY, .message = AGV_MSG_VEHICLE_STATUS, .ms = 0});
+    run_until(2311);
     TEST_ASSERT_EQUAL_HEX8(0x40u, mode_byte());
-    TEST_ASSERT_FALSE(
-        act((vehicle_action_t){.what = VEHICLE_DO_DELAY, .message = AGV_MSG_VEHICLE_STATUS, .ms = 1001u}));
+    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_DELAY, .message = AGV_MSG_VEHICLE_STATUS, .ms = 1001}));
 }
 
 void test_the_longest_delay_reaches_back_as_far_as_it_says(void) {
-    run_until(100u);
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_DELAY, .message = AGV_MSG_VEHICLE_STATUS, .ms = 1000u});
-    run_until(3000u);
+    run_until(100);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_DELAY, .message = AGV_MSG_VEHICLE_STATUS, .ms = 1000});
+    run_until(3000);
     do_it(VEHICLE_DO_ENGAGE, true);
-    run_until(4000u);
+    run_until(4000);
     TEST_ASSERT_EQUAL_HEX8(0x40u, mode_byte());
-    run_until(4001u);
+    run_until(4001);
     TEST_ASSERT_EQUAL_HEX8(0x80u, mode_byte());
 }
 
@@ -277,16 +276,16 @@ void test_a_command_that_is_ignored_changes_nothing(void) {
     (void)act((vehicle_action_t){.what = VEHICLE_DO_IGNORE, .message = AGV_MSG_TURN_SIGNAL_COMMAND, .on = true});
     park();
     (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_AUTOPILOT_OFF, .on = true});
-    run_until(6000u);
+    run_until(6000);
     TEST_ASSERT_TRUE(look().autopilot);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
     TEST_ASSERT_EQUAL_INT32(1200, look().speed_mm_s);
-    TEST_ASSERT_EQUAL_HEX8(0u, look().alarms); /* the AI computer is heard all the same */
+    TEST_ASSERT_EQUAL_HEX8(0, look().alarms); /* the AI computer is heard all the same */
     (void)act((vehicle_action_t){.what = VEHICLE_DO_IGNORE, .message = AGV_MSG_THROTTLE_COMMAND, .on = false});
-    run_until(6200u);
-    TEST_ASSERT_EQUAL_UINT16(0u, look().throttle_permille);
+    run_until(6200);
+    TEST_ASSERT_EQUAL_UINT16(0, look().throttle_permille);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_RECOVER, .node = VEHICLE_VCU});
-    run_until(6400u);
+    run_until(6400);
     TEST_ASSERT_FALSE(look().autopilot);
 }
 
@@ -294,10 +293,10 @@ void test_an_eps_that_ignores_065h_keeps_the_angle_that_it_was_told(void) {
     drive(AGV_GEAR_D);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_IGNORE, .message = AGV_MSG_STEERING_COMMAND, .on = true});
     (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .angle_ddeg = 600});
-    run_until(4000u);
+    run_until(4000);
     TEST_ASSERT_EQUAL_INT32(0, measured_ddeg());
     (void)act((vehicle_action_t){.what = VEHICLE_DO_RECOVER, .node = VEHICLE_EPS});
-    run_until(5000u);
+    run_until(5000);
     TEST_ASSERT_EQUAL_INT32(600, measured_ddeg());
 }
 
@@ -307,7 +306,7 @@ static void range_of(agv_message_t message, unsigned byte, size_t first, int32_t
     range[1] = INT32_MIN;
     for (size_t i = first; i < sent_count; i++) {
         if (sent[i].frame.id == config.ids.of[message]) {
-            const int32_t ddeg = sent[i].frame.data[byte] + (sent[i].frame.data[byte + 1u] * 256) - 9000;
+            const int32_t ddeg = sent[i].frame.data[byte] + (sent[i].frame.data[byte + 1] * 256) - 9000;
             range[0] = (ddeg < range[0]) ? ddeg : range[0];
             range[1] = (ddeg > range[1]) ? ddeg : range[1];
         }
@@ -317,19 +316,19 @@ static void range_of(agv_message_t message, unsigned byte, size_t first, int32_t
 void test_the_eps_hunts_around_the_command(void) {
     int32_t range[2];
 
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_EPS_HUNT, .angle_ddeg = 600, .ms = 400u});
-    run_until(1000u);
-    range_of(AGV_MSG_STEERING_STATUS, 2u, 0u, range);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_EPS_HUNT, .angle_ddeg = 600, .ms = 400});
+    run_until(1000);
+    range_of(AGV_MSG_STEERING_STATUS, 2, 0, range);
     TEST_ASSERT_EQUAL_INT32(0, range[0]); /* in assist nothing commands it */
     TEST_ASSERT_EQUAL_INT32(0, range[1]);
     drive(AGV_GEAR_D);
     const size_t first = sent_count;
-    run_until(5000u);
-    range_of(AGV_MSG_STEERING_STATUS, 2u, first, range);
+    run_until(5000);
+    range_of(AGV_MSG_STEERING_STATUS, 2, first, range);
     TEST_ASSERT_INT32_WITHIN(30, -600, range[0]);
     TEST_ASSERT_INT32_WITHIN(30, 600, range[1]);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_EPS_HUNT});
-    run_until(5010u);
+    run_until(5010);
     TEST_ASSERT_EQUAL_INT32(0, measured_ddeg());
 }
 
@@ -338,38 +337,38 @@ void test_the_ai_computer_weaves_and_the_steering_is_stuck(void) {
 
     drive(AGV_GEAR_D);
     (void)act((vehicle_action_t){
-        .what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 300u, .angle_ddeg = 100});
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_WEAVE, .angle_ddeg = 300, .ms = 2000u});
+        .what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 300, .angle_ddeg = 100});
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_WEAVE, .angle_ddeg = 300, .ms = 2000});
     size_t first = sent_count;
-    run_until(7000u);
-    range_of(AGV_MSG_STEERING_COMMAND, 0u, first, range);
+    run_until(7000);
+    range_of(AGV_MSG_STEERING_COMMAND, 0, first, range);
     TEST_ASSERT_INT32_WITHIN(8, -200, range[0]);
     TEST_ASSERT_INT32_WITHIN(8, 400, range[1]);
     TEST_ASSERT_INT32_WITHIN(30, 100, measured_ddeg()); /* two periods: in the middle again */
     do_it(VEHICLE_DO_EPS_STUCK, true);
     first = sent_count;
-    run_until(11000u);
-    range_of(AGV_MSG_STEERING_STATUS, 2u, first, range);
+    run_until(11000);
+    range_of(AGV_MSG_STEERING_STATUS, 2, first, range);
     TEST_ASSERT_EQUAL_INT32(range[0], range[1]);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_WEAVE});
-    run_until(11100u);
+    run_until(11100);
     TEST_ASSERT_EQUAL_HEX8(0x8Cu, last_of(AGV_MSG_STEERING_COMMAND)->frame.data[0]); /* +10.0 degrees */
     (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .angle_ddeg = 9000});
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_WEAVE, .angle_ddeg = 9000, .ms = 1000u});
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_WEAVE, .angle_ddeg = 9000, .ms = 1000});
     first = sent_count;
-    run_until(13000u);
-    range_of(AGV_MSG_STEERING_COMMAND, 0u, first, range);
+    run_until(13000);
+    range_of(AGV_MSG_STEERING_COMMAND, 0, first, range);
     TEST_ASSERT_EQUAL_INT32(9000, range[1]); /* never out of range */
 }
 
 void test_the_other_direction_is_taken_at_standstill_only(void) {
     drive(AGV_GEAR_D);
     const size_t first = sent_count;
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_R, .throttle_permille = 200u});
-    run_until(3200u); /* the AI computer waits, with throttle 0 */
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_R, .throttle_permille = 200});
+    run_until(3200); /* the AI computer waits, with throttle 0 */
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, last_of(AGV_MSG_GEAR_COMMAND)->frame.data[0]);
-    TEST_ASSERT_EQUAL_UINT8(0u, last_of(AGV_MSG_THROTTLE_COMMAND)->frame.data[0]);
-    run_until(9000u);
+    TEST_ASSERT_EQUAL_UINT8(0, last_of(AGV_MSG_THROTTLE_COMMAND)->frame.data[0]);
+    run_until(9000);
     TEST_ASSERT_EQUAL_INT32(-800, look().speed_mm_s);
     int32_t speed_mm_s = 0;
     for (size_t i = first; i < sent_count; i++) {
@@ -389,13 +388,13 @@ void test_the_other_direction_is_taken_at_standstill_only(void) {
 void test_a_vcu_that_is_told_to_change_direction_brakes_first(void) {
     drive(AGV_GEAR_D);
     do_it(VEHICLE_DO_AI_STUBBORN, true);
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_R, .throttle_permille = 300u});
-    run_until(3300u); /* 168h of 3037: it brakes with 3 m/s2 */
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_R, .throttle_permille = 300});
+    run_until(3300); /* 168h of 3037: it brakes with 3 m/s2 */
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
     TEST_ASSERT_INT32_WITHIN(30, 411, look().speed_mm_s);
-    TEST_ASSERT_EQUAL_UINT8(0u, throttle_status());
-    run_until(3700u);
+    TEST_ASSERT_EQUAL_UINT8(0, throttle_status());
+    run_until(3700);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_R, look().gear);
-    run_until(6000u);
+    run_until(6000);
     TEST_ASSERT_EQUAL_INT32(-1200, look().speed_mm_s);
 }

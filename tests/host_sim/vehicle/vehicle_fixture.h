@@ -34,8 +34,8 @@ static void keep(void *ctx, vehicle_node_t from, hal_can_side_t side, const hal_
 }
 
 static void begin(void) {
-    sent_count = 0u;
-    now_ms = 0u;
+    sent_count = 0;
+    now_ms = 0;
     vehicle_init(&vehicle, &config, keep, NULL);
 }
 
@@ -80,18 +80,18 @@ static void command(agv_message_t message, uint8_t byte0, uint8_t byte1) {
 
 /* Frames of a message sent since `first`. */
 static size_t count_of(agv_message_t message, size_t first) {
-    size_t count = 0u;
+    size_t count = 0;
     for (size_t i = first; i < sent_count; i++) {
-        count += (sent[i].frame.id == config.ids.of[message]) ? 1u : 0u;
+        count += (sent[i].frame.id == config.ids.of[message]) ? 1 : 0;
     }
     return count;
 }
 
 /* The newest frame of a message. */
 static const sent_t *last_of(agv_message_t message) {
-    for (size_t i = sent_count; i > 0u; i--) {
-        if (sent[i - 1u].frame.id == config.ids.of[message]) {
-            return &sent[i - 1u];
+    for (size_t i = sent_count; i > 0; i--) {
+        if (sent[i - 1].frame.id == config.ids.of[message]) {
+            return &sent[i - 1];
         }
     }
     TEST_FAIL_MESSAGE("no such frame was sent");

@@ -20,7 +20,7 @@ void tearDown(void) {
 }
 
 static inline void check_words(const why_trip_t *trip, const char *expected) {
-    text_t text = {.used = 0u};
+    text_t text = {.used = 0};
     why_words_cause(&text, why, trip);
     TEST_ASSERT_EQUAL_STRING(expected, text.bytes);
 }

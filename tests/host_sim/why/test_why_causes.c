@@ -120,8 +120,8 @@ static void check_row(const row_t *row) {
     }
     const why_trip_t *trip = trip_by(row->trip.fault, row->trip.trip_ms);
     TEST_ASSERT_EQUAL_MESSAGE(row->trip.kind, trip->kind, row->name);
-    TEST_ASSERT_EQUAL_UINT64_MESSAGE(row->trip.cause_ms * 1000u, trip->cause_us, row->name);
-    TEST_ASSERT_EQUAL_UINT64_MESSAGE((row->trip.good_ms == NONE) ? WHY_NEVER : row->trip.good_ms * 1000u,
+    TEST_ASSERT_EQUAL_UINT64_MESSAGE(row->trip.cause_ms * 1000, trip->cause_us, row->name);
+    TEST_ASSERT_EQUAL_UINT64_MESSAGE((row->trip.good_ms == NONE) ? WHY_NEVER : row->trip.good_ms * 1000,
                                      trip->last_good_us, row->name);
     TEST_ASSERT_EQUAL_INT64_MESSAGE(row->trip.limit, trip->limit, row->name);
     TEST_ASSERT_EQUAL_STRING_MESSAGE(row->trip.unit, trip->unit, row->name);

@@ -30,7 +30,7 @@ static const why_trip_t *trip_of(agv_fault_t reason, uint16_t seen, uint64_t eng
 }
 
 static void check_times(const why_trip_t *trip, uint64_t cause_ms, uint64_t good_us) {
-    TEST_ASSERT_EQUAL_UINT64(cause_ms * 1000u, trip->cause_us);
+    TEST_ASSERT_EQUAL_UINT64(cause_ms * 1000, trip->cause_us);
     TEST_ASSERT_EQUAL_UINT64(good_us, trip->last_good_us);
 }
 

@@ -11,7 +11,7 @@
 static inline void feed_frame(why_t *why, hal_can_side_t side, uint32_t id, const char bytes[8], uint64_t t_ms) {
     hal_can_frame_t frame = {.id = id, .length = 8};
     memcpy(frame.data, bytes, 8);
-    why_frame(why, side, &frame, t_ms * 1000u);
+    why_frame(why, side, &frame, t_ms * 1000);
 }
 
 static inline void feed_state(why_t *why, uint8_t from, uint8_t to, uint8_t reason, uint64_t t_ms) {

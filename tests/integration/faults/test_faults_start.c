@@ -66,7 +66,7 @@ void test_store_invalid(void) {
 /* ---- MEMORY_CORRUPTED ---- */
 
 static void flip(size_t bit) {
-    ((uint8_t *)&f.supervisor)[bit / 8u] ^= (uint8_t)(1u << (bit % 8u));
+    ((uint8_t *)&f.supervisor)[bit / 8] ^= (uint8_t)(1u << (bit % 8));
 }
 
 /* Shows: INT-5, FSM-2, FSM-9, MEMORY_CORRUPTED */
@@ -105,7 +105,7 @@ void test_memory_corrupted_is_found_by_a_frame(void) {
 /* Every bit of the memory, in STANDBY and in ACTIVE, each in a healthy supervisor. */
 static void flip_every_bit(void) {
     const agv_supervisor_t healthy = f.supervisor;
-    const size_t bits = 8u * (offsetof(agv_supervisor_t, seal) + sizeof healthy.seal); /* padding may follow */
+    const size_t bits = 8 * (offsetof(agv_supervisor_t, seal) + sizeof healthy.seal); /* padding may follow */
     for (size_t bit = 0; bit < bits; bit++) {
         f.supervisor = healthy;
         sim_store_init(&f.store);

@@ -72,7 +72,7 @@ static bool is_awaited_while_engaged(const cause_t *cause) {
 
 /* The last frame comes at a time for which its deadline expires exactly in that millisecond. */
 static void send_last(const cause_t *row, uint32_t expires_ms) {
-    if (f.now_ms == expires_ms - row->count - 1u) {
+    if (f.now_ms == expires_ms - row->count - 1) {
         fixture_send_now(&f, row->message);
         f.traffic[row->message].muted = true;
     }
@@ -81,7 +81,7 @@ static void send_last(const cause_t *row, uint32_t expires_ms) {
 static void check_tick(const cause_t *upper, const cause_t *lower) {
     fixture_init(&f);
     fixture_active(&f);
-    const uint32_t expires_ms = f.now_ms + 400u;
+    const uint32_t expires_ms = f.now_ms + 400;
     for (unsigned i = 0; i < 400; i++) {
         expect_reason(&f, AGV_FAULT_NONE);
         send_last(upper, expires_ms);

@@ -10,7 +10,7 @@ static void expect_held_for_a_second(uint16_t raw) {
     for (uint32_t n = 0; n < 40; n++) {
         const fixture_sent_t *sent = fixture_nth_sent(&f, 0x065, n);
         TEST_ASSERT_EQUAL_HEX8_MESSAGE(raw & 0xFFu, sent->data[0], f.what);
-        TEST_ASSERT_EQUAL_HEX8_MESSAGE(raw >> 8u, sent->data[1], f.what);
+        TEST_ASSERT_EQUAL_HEX8_MESSAGE(raw >> 8, sent->data[1], f.what);
     }
 }
 
@@ -290,7 +290,7 @@ static void trip_among_late_frames(uint32_t late_ms) {
     walk_trip(&f);
     fixture_forget_sent(&f);
     fixture_angle(&f, 8000);
-    fixture_run_without_ticks(&f, late_ms - 1u);
+    fixture_run_without_ticks(&f, late_ms - 1);
     fixture_run(&f, 1);
 }
 

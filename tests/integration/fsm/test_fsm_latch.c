@@ -26,7 +26,7 @@ static void start_with_invalid_config(void) {
 
 static void corrupt_memory(void) {
     fixture_active(&f);
-    ((uint8_t *)&f.supervisor)[sizeof f.supervisor / 2u] ^= 0x01u;
+    ((uint8_t *)&f.supervisor)[sizeof f.supervisor / 2] ^= 0x01u;
     fixture_send_now(&f, AGV_MSG_WHEEL_SPEED);
 }
 
@@ -75,7 +75,7 @@ void test_an_unresettable_fault_outlives_every_reset_but_a_power_on(void) {
 /* Shows: FSM-5, FSM-9, MEMORY_CORRUPTED */
 void test_corrupted_memory_keeps_the_reason_of_an_earlier_trip(void) {
     walk_to_safe(&f);
-    ((uint8_t *)&f.supervisor)[sizeof f.supervisor / 2u] ^= 0x01u;
+    ((uint8_t *)&f.supervisor)[sizeof f.supervisor / 2] ^= 0x01u;
     fixture_send_now(&f, AGV_MSG_WHEEL_SPEED);
     expect_fault(&f, AGV_FAULT_MEMORY_CORRUPTED, true);
     expect_cannot_be_reset(AGV_FAULT_S_DRIVER_ALARM);
@@ -207,7 +207,7 @@ void test_the_own_heartbeat_runs(void) {
     TEST_ASSERT_TRUE(count > 300);
     for (uint32_t n = 1; n < count; n++) {
         const uint8_t before = fixture_nth_sent(&f, 0x43F, n - 1)->data[7];
-        TEST_ASSERT_EQUAL_HEX8((uint8_t)(before + 1u), fixture_nth_sent(&f, 0x43F, n)->data[7]);
+        TEST_ASSERT_EQUAL_HEX8((uint8_t)(before + 1), fixture_nth_sent(&f, 0x43F, n)->data[7]);
     }
 }
 

@@ -22,7 +22,7 @@ static uint32_t ends_in[TESTBED_STATES];
 static uint32_t resets;
 
 static uint32_t draw(uint32_t below) {
-    random_state = random_state * 1664525u + 1013904223u;
+    random_state = random_state * 1664525 + 1013904223;
     return (random_state >> 8) % below;
 }
 
@@ -40,7 +40,7 @@ static void note_end(void) {
     static const agv_state_t STATES[] = {AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_STATE_ACTIVE, AGV_STATE_TRIPPED,
                                          AGV_STATE_SAFE};
     for (unsigned i = 0; i < TESTBED_STATES; i++) {
-        ends_in[i] += (agv_supervisor_state(&testbed.supervisor) == STATES[i]) ? 1u : 0u;
+        ends_in[i] += (agv_supervisor_state(&testbed.supervisor) == STATES[i]) ? 1 : 0;
     }
     resets += (uint32_t)testbed.rules.resets;
 }
@@ -67,9 +67,9 @@ static void run_randomly(unsigned first_variant, uint32_t seed) {
     (void)printf("%u resets; ends in INIT %u, STANDBY %u, ACTIVE %u, TRIPPED %u, SAFE %u\n", (unsigned)resets,
                  (unsigned)ends_in[0], (unsigned)ends_in[1], (unsigned)ends_in[2], (unsigned)ends_in[3],
                  (unsigned)ends_in[4]);
-    TEST_ASSERT_TRUE(resets >= 3u);
+    TEST_ASSERT_TRUE(resets >= 3);
     for (unsigned i = 0; i < TESTBED_STATES; i++) {
-        TEST_ASSERT_TRUE_MESSAGE(ends_in[i] >= 3u, "a state was hardly seen");
+        TEST_ASSERT_TRUE_MESSAGE(ends_in[i] >= 3, "a state was hardly seen");
     }
 }
 

@@ -39,7 +39,7 @@ static void flood(void) {
 static void run(uint32_t ms) {
     for (uint32_t i = 0; i < ms; i++) {
         flood();
-        run_bus_until_us(1000u * (uint64_t)(f.now_ms - start_ms + 1u));
+        run_bus_until_us(1000 * (uint64_t)(f.now_ms - start_ms + 1));
         fixture_run(&f, 1);
     }
 }
@@ -126,7 +126,7 @@ void test_commands_that_wait_in_the_controller_are_never_sent_after_a_trip(void)
 /* Shows: FSM-2 */
 void test_at_most_the_frame_on_the_wire_precedes_the_first_safe_one(void) {
     ai_commands();
-    run_bus_until_us(1000u * (uint64_t)(f.now_ms - start_ms) + 100u);
+    run_bus_until_us(1000 * (uint64_t)(f.now_ms - start_ms) + 100);
     walk_trip(&f);
     run(5);
     TEST_ASSERT_EQUAL_HEX32(0x065, wire[0].id);
@@ -168,7 +168,7 @@ void test_commands_that_wait_in_the_controller_are_never_sent_in_manual(void) {
 /* Shows: FSM-2, INT-5, MEMORY_CORRUPTED */
 void test_after_memory_corruption_frames_that_wait_in_the_controller_are_never_sent(void) {
     ai_commands();
-    ((uint8_t *)&f.supervisor)[sizeof f.supervisor / 3u] ^= 0x20u;
+    ((uint8_t *)&f.supervisor)[sizeof f.supervisor / 3] ^= 0x20u;
     fixture_send_now(&f, AGV_MSG_THROTTLE_STATUS);
     expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
     run(5);
@@ -198,7 +198,7 @@ void test_after_bus_off_only_safe_commands_are_sent(void) {
 static uint32_t count_on_wire(uint32_t id) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < wire_count; i++) {
-        count += (wire[i].id == id) ? 1u : 0u;
+        count += (wire[i].id == id) ? 1 : 0;
     }
     return count;
 }
@@ -217,7 +217,7 @@ void test_a_flood_that_stops_43fh_does_not_stop_gear_p(void) {
     TEST_ASSERT_EQUAL_HEX32(0x168, wire[2].id);
     TEST_ASSERT_EQUAL_HEX8(GEAR_P, wire[2].data[0]);
     run(1000);
-    TEST_ASSERT_UINT32_WITHIN(1, 10, count_on_wire(0x168) - 1u);
+    TEST_ASSERT_UINT32_WITHIN(1, 10, count_on_wire(0x168) - 1);
     TEST_ASSERT_EQUAL_UINT32(0, count_on_wire(0x43F));
     flood_id = 0;
     run(20);

@@ -37,7 +37,7 @@ static void pester(hal_can_side_t side, uint32_t id) {
 }
 
 static void pester_all(bool with_commands) {
-    const bool gateway = f.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    const bool gateway = f.config.topology == AGV_TOPOLOGY_GATEWAY;
     for (unsigned i = 0; i < 7; i++) {
         pester(HAL_CAN_VEHICLE, STATUS_IDS[i]);
     }

@@ -29,7 +29,7 @@ static void command_gear(uint8_t gear) {
 }
 
 static void expect_trip_at(agv_fault_t fault, uint32_t moment_ms, int led) {
-    walk_run_to(&f, moment_ms - 1u);
+    walk_run_to(&f, moment_ms - 1);
     expect_nothing(&f, fault, AGV_STATE_ACTIVE);
     fixture_forget_sent(&f);
     expect_trip_after(&f, 1, fault, ANGLE_CENTRE);
@@ -51,7 +51,7 @@ void test_throttle_above_its_command(void) {
     active_in_d();
     command_throttle(100);
     measure_throttle(126);
-    expect_trip_at(THROTTLE, f.now_ms + 500u, 7);
+    expect_trip_at(THROTTLE, f.now_ms + 500, 7);
     measure_throttle(124); /* down, but not by 25 */
     expect_fault_after(&f, 999, THROTTLE, true);
     expect_fault_after(&f, 1, THROTTLE, false);
@@ -73,7 +73,7 @@ void test_a_throttle_on_its_way_down(void) {
     const uint32_t emptied_ms = f.now_ms;
     fixture_run(&f, 100);
     measure_throttle(26); /* 24 */
-    expect_trip_at(THROTTLE, emptied_ms + 500u, 7);
+    expect_trip_at(THROTTLE, emptied_ms + 500, 7);
 }
 
 /* Without a command nothing is compared; the deadline covers that. A command from before the engagement does not
@@ -106,7 +106,7 @@ void test_the_throttle_is_compared_with_the_forwarded_command(void) {
     measure_throttle(125);
     expect_nothing_after(&f, 2000, THROTTLE, AGV_STATE_ACTIVE);
     measure_throttle(126);
-    expect_trip_at(THROTTLE, f.now_ms + 500u, 7);
+    expect_trip_at(THROTTLE, f.now_ms + 500, 7);
 }
 
 /* ---- GEAR_DEVIATION ---- */
@@ -121,7 +121,7 @@ static void check_gear(uint8_t reported, uint8_t commanded, bool trips) {
     measure_throttle(3);
     command_gear(commanded);
     if (trips) {
-        expect_trip_at(GEAR, f.now_ms + 1000u, 8);
+        expect_trip_at(GEAR, f.now_ms + 1000, 8);
     } else {
         expect_fault_after(&f, 3000, GEAR, false);
         TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, GEAR));
@@ -148,7 +148,7 @@ static void ask_for_off(bool off) {
 void test_autopilot_off_is_ignored(void) {
     active_in_d();
     ask_for_off(true);
-    expect_trip_at(IGNORED, f.now_ms + 1000u, -1);
+    expect_trip_at(IGNORED, f.now_ms + 1000, -1);
     fixture_mode(&f, MODE_MANUAL);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     expect_fault(&f, IGNORED, false);
@@ -184,18 +184,18 @@ void test_the_budgets_are_settings(void) {
     f.config.throttle_idle_counts = 5;
     fixture_active(&f);
     measure_throttle(6);
-    expect_trip_at(GEAR, f.now_ms + 321u, 8);
+    expect_trip_at(GEAR, f.now_ms + 321, 8);
     fixture_init(&f);
     f.config.autopilot_off_ms = 234;
     active_in_d();
     ask_for_off(true);
-    expect_trip_at(IGNORED, f.now_ms + 234u, -1);
+    expect_trip_at(IGNORED, f.now_ms + 234, -1);
     fixture_init(&f);
     f.config.throttle_deviation_ms = 111;
     f.config.throttle_deviation_counts = 5;
     active_in_d();
     measure_throttle(6);
-    expect_trip_at(THROTTLE, f.now_ms + 111u, 7);
+    expect_trip_at(THROTTLE, f.now_ms + 111, 7);
 }
 
 /* ---- SPEED_IMPLAUSIBLE: 36 counts of 363h are 10 mm/s ---- */
@@ -210,7 +210,7 @@ static void set_speeds(uint16_t counts, int32_t left_mm_s, int32_t right_mm_s) {
 }
 
 static void expect_warning_at(uint32_t moment_ms) {
-    walk_run_to(&f, moment_ms - 1u);
+    walk_run_to(&f, moment_ms - 1);
     expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
     fixture_run(&f, 1);
     expect_warning(&f, SPEED, AGV_STATE_STANDBY);
@@ -227,7 +227,7 @@ void test_two_measurements_of_speed(void) {
     set_speeds(3600, 2000, 2000);
     expect_nothing_after(&f, 3000, SPEED, AGV_STATE_STANDBY);
     set_speeds(3600, 249, 249);
-    expect_warning_at(f.now_ms + 1000u);
+    expect_warning_at(f.now_ms + 1000);
     set_speeds(3600, 1000, 1000);
     expect_fault_after(&f, 1999, SPEED, true);
     expect_fault_after(&f, 1, SPEED, false);

@@ -22,7 +22,7 @@ static void measure(uint16_t raw) {
 }
 
 static void expect_trip_at(uint32_t moment_ms, int32_t hold_raw) {
-    walk_run_to(&f, moment_ms - 1u);
+    walk_run_to(&f, moment_ms - 1);
     expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
     expect_trip_after(&f, 1, FAULT, hold_raw);
     expect_led(&f, 13);
@@ -33,7 +33,7 @@ static void expect_trip_at(uint32_t moment_ms, int32_t hold_raw) {
 void test_a_deviation_ends_when_its_budget_is_empty(void) {
     fixture_active(&f);
     command(9501);
-    expect_trip_at(f.now_ms + 500u, ANGLE_CENTRE);
+    expect_trip_at(f.now_ms + 500, ANGLE_CENTRE);
     measure(9001);
     expect_fault_after(&f, 999, FAULT, true);
     expect_fault_after(&f, 1, FAULT, false);
@@ -49,7 +49,7 @@ void test_a_gain_across_an_invalid_angle(void) {
     fixture_run(&f, 200);
     measure(18001);
     measure(9250);
-    expect_trip_at(f.now_ms + 500u, 9250);
+    expect_trip_at(f.now_ms + 500, 9250);
 }
 
 /* With a deviation from the start the 500 ms begin after the grace time of 500 ms. */
@@ -59,7 +59,7 @@ void test_deviation_counts_after_the_grace(void) {
     fixture_command_angle(&f, 12000);
     expect_nothing_after(&f, 3000, FAULT, AGV_STATE_STANDBY); /* not in manual */
     walk_engage(&f);
-    expect_trip_at(f.now_ms + 1000u, ANGLE_CENTRE);
+    expect_trip_at(f.now_ms + 1000, ANGLE_CENTRE);
 }
 
 /* The steering is not compared with a command from before the engagement, neither from manual nor from an earlier
@@ -109,7 +109,7 @@ void test_the_limits_are_settings(void) {
     command(9200);
     fixture_run(&f, 60);
     measure(9010);
-    expect_trip_at(f.now_ms + 100u, 9010);
+    expect_trip_at(f.now_ms + 100, 9010);
 }
 
 /* ---- Gateway: compared with the forwarded command ---- */
@@ -121,7 +121,7 @@ static void check_gateway(uint16_t slew_ddeg_s, uint32_t trips_after_ms) {
     fixture_active(&f);
     command(12000);
     const uint32_t began_ms = f.now_ms;
-    walk_run_to(&f, began_ms + trips_after_ms - 1u);
+    walk_run_to(&f, began_ms + trips_after_ms - 1);
     expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
     fixture_forget_sent(&f);
     expect_trip_after(&f, 1, FAULT, ANGLE_CENTRE);

@@ -39,7 +39,7 @@ void test_a_day_of_late_steps_without_drift(void) {
     fixture_forget_sent(&f);
     f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF;
     while (f.now_ms - trip_ms < DAY_MS) {
-        random = random * 1664525u + 1013904223u;
+        random = random * 1664525 + 1013904223;
         fixture_jump(&f, 1 + (random >> 16) % 89);
         check_slots(trip_ms, 88);
     }

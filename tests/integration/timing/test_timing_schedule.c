@@ -70,9 +70,9 @@ void test_nothing_is_skipped_in_normal_operation(void) {
 
 /* Ticks only, in steps of 1000 s, to 300 ms before a full wrap of the clock; then every millisecond. */
 static void go_round_the_clock(uint32_t since_ms, void (*look)(void)) {
-    const uint32_t before_ms = since_ms - 300u;
+    const uint32_t before_ms = since_ms - 300;
     f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF;
-    while (before_ms - f.now_ms > 1000000u) {
+    while (before_ms - f.now_ms > 1000000) {
         fixture_jump(&f, 1000000);
         look();
         fixture_forget_sent(&f);

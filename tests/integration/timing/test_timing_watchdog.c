@@ -85,7 +85,7 @@ void test_a_receive_path_that_comes_back_in_time_is_in_time(void) {
  */
 /* Shows: TIM-3 */
 void test_the_watchdog_is_not_fed_while_the_time_stands_still(void) {
-    const hal_can_frame_t ahead = {.id = 0x101, .time_ms = f.now_ms + 100000000u, .length = 8};
+    const hal_can_frame_t ahead = {.id = 0x101, .time_ms = f.now_ms + 100000000, .length = 8};
     fixture_standby(&f);
     agv_supervisor_frame(&f.supervisor, &f.ports, HAL_CAN_VEHICLE, &ahead);
     fixture_run(&f, 1); /* a step that comes late */

@@ -262,7 +262,7 @@ static void expect_rise(uint8_t commanded, uint8_t passed) {
     const uint8_t command[8] = {commanded};
     const uint8_t expected[8] = {passed};
     expect_pass(0x075, command, expected);
-    TEST_ASSERT_EQUAL_UINT32(before + (commanded != passed ? 1u : 0u), limited());
+    TEST_ASSERT_EQUAL_UINT32(before + (commanded != passed ? 1 : 0), limited());
     fixture_run(&f, 100);
 }
 

@@ -111,7 +111,7 @@ static void passive_with_a_sender_that_pauses(void) {
     settle();
     const uint32_t sent[7] = {0, 1, 1, 1,
                               2, 2, 2}; /* the first override at a quiet tick, the next one behind a frame */
-    for (unsigned i = 0; i < 7u; i++) {
+    for (unsigned i = 0; i < 7; i++) {
         foreign_gear(1);
         TEST_ASSERT_EQUAL_UINT32(sent[i], fixture_count_sent(&f, 0x168));
         fixture_run(&f, 2);
@@ -136,9 +136,9 @@ void test_while_error_passive_a_sender_that_pauses_is_known_by_its_third_frame(v
     tripped();
     sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_PASSIVE);
     settle();
-    for (unsigned i = 0; i < 3u; i++) {
+    for (unsigned i = 0; i < 3; i++) {
         foreign_gear(1);
-        TEST_ASSERT_EQUAL_UINT32((i < 2u) ? i : 3u, fixture_count_sent(&f, 0x168));
+        TEST_ASSERT_EQUAL_UINT32((i < 2) ? i : 3, fixture_count_sent(&f, 0x168));
         fixture_run(&f, 4);
     }
     TEST_ASSERT_EQUAL_UINT32(3, fixture_count_sent(&f, 0x168));
@@ -184,7 +184,7 @@ static void expect_override_behind_a_burst(uint32_t gap_ms) {
 
 /* Shows: TOP-1, ERROR_PASSIVE */
 void test_while_error_passive_a_burst_after_single_frames_is_overridden_at_its_end(void) {
-    for (uint32_t gap_ms = 0; gap_ms < 2u; gap_ms++) {
+    for (uint32_t gap_ms = 0; gap_ms < 2; gap_ms++) {
         fixture_init(&f);
         expect_override_behind_a_burst(gap_ms);
     }

@@ -81,8 +81,8 @@ void test_an_interface_that_cannot_be_opened_is_named(void) {
 }
 
 void test_too_many_identifiers_are_refused(void) {
-    const uint16_t ids[LINUX_CAN_IDS_MAX + 1u] = {0};
-    const linux_can_options_t options = {.ids = ids, .id_count = LINUX_CAN_IDS_MAX + 1u};
+    const uint16_t ids[LINUX_CAN_IDS_MAX + 1] = {0};
+    const linux_can_options_t options = {.ids = ids, .id_count = LINUX_CAN_IDS_MAX + 1};
     TEST_ASSERT_FALSE(linux_can_open(&can, "vcan0", &options, error));
     TEST_ASSERT_EQUAL_STRING("vcan0: more identifiers than can be filtered for", error);
     const linux_can_options_t most = {.ids = ids, .id_count = LINUX_CAN_IDS_MAX};
@@ -255,7 +255,7 @@ void test_frames_lost_by_a_full_queue_are_counted(void) {
     vcan_send(tester, 0x066, 8, EIGHT); /* the kernel reports the loss with the next frame that it keeps */
     TEST_ASSERT_EQUAL(LINUX_CAN_RECORD, read_soon(&record));
     TEST_ASSERT_EQUAL_HEX32(0x066, record.frame.id);
-    TEST_ASSERT_EQUAL_UINT32(200u - received, record.lost);
+    TEST_ASSERT_EQUAL_UINT32(200 - received, record.lost);
 }
 
 void test_an_interface_that_is_down_is_reported_once_and_works_again(void) {

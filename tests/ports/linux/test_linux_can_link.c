@@ -125,7 +125,7 @@ void test_other_messages_are_not_read(void) {
 /* Bytes behind the end are of another size each time, so that a sanitizer sees each reading beyond it. */
 void test_a_message_that_is_cut_off_anywhere(void) {
     for (size_t size = 0; size < sizeof message; size++) {
-        unsigned char *part = malloc(size + 1u);
+        unsigned char *part = malloc(size + 1);
         TEST_ASSERT_NOT_NULL(part);
         memcpy(part + 1, message, size);
         const bool is_read = linux_can_link_read(part + 1, size, &link_read); /* at an odd address, too */
@@ -157,7 +157,7 @@ void test_lengths_that_are_wrong(void) {
             TEST_ASSERT_NOT_NULL(copy);
             memcpy(copy, message, sizeof message);
             copy[lengths[i]] = (unsigned char)value;
-            copy[lengths[i] + 1] = (unsigned char)(value >> 8u);
+            copy[lengths[i] + 1] = (unsigned char)(value >> 8);
             const bool is_read = linux_can_link_read(copy, sizeof message, &link_read);
             free(copy);
             TEST_ASSERT_TRUE(is_read);
@@ -187,7 +187,7 @@ void test_a_query_that_failed_is_repeated(void) {
     const int free_fd = dup(STDIN_FILENO);
     TEST_ASSERT_EQUAL_INT(0, close(free_fd));
     TEST_ASSERT_EQUAL_INT(0, getrlimit(RLIMIT_NOFILE, &limit));
-    const struct rlimit one_left = {.rlim_cur = (rlim_t)free_fd + 1u, .rlim_max = limit.rlim_max};
+    const struct rlimit one_left = {.rlim_cur = (rlim_t)free_fd + 1, .rlim_max = limit.rlim_max};
     TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &one_left));
     const bool up_at_first = linux_can_is_up(&can);
     TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &limit));

@@ -53,11 +53,11 @@ void test_a_stamp_is_as_old_as_it_says_up_to_a_minute_and_since_the_start(void) 
         uint64_t at_us;
     } cases[] = {
         {200 * S_US, 0, 200 * S_US},
-        {200 * S_US, 1000, 200 * S_US - 1000u},
+        {200 * S_US, 1000, 200 * S_US - 1000},
         {200 * S_US, 60 * S_US, 140 * S_US},
-        {200 * S_US, 60 * S_US + 1u, 200 * S_US},
+        {200 * S_US, 60 * S_US + 1, 200 * S_US},
         {2 * S_US, 2 * S_US, 0},
-        {2 * S_US, 2 * S_US + 1u, 2 * S_US},
+        {2 * S_US, 2 * S_US + 1, 2 * S_US},
         {200 * S_US, -S_US, 200 * S_US}, /* in the future */
     };
     for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -77,7 +77,7 @@ void test_an_interruption_between_the_readings_of_two_clocks_is_no_age(void) {
     interruptions = 2;
     TEST_ASSERT_EQUAL_UINT64(2 * S_US, linux_clock_of_stamp(&sut, arrived));
     interruptions = 3; /* it gives up: older than it is, not fresher */
-    TEST_ASSERT_EQUAL_UINT64(2 * S_US - 1000u, linux_clock_of_stamp(&sut, arrived));
+    TEST_ASSERT_EQUAL_UINT64(2 * S_US - 1000, linux_clock_of_stamp(&sut, arrived));
 }
 
 /* Shows: TIM-4 */
@@ -86,7 +86,7 @@ void test_the_clock_goes_on_while_the_computer_sleeps(void) {
     TEST_ASSERT_EQUAL_UINT64(2 * S_US, linux_clock_now_us(&sut));
     asleep_us += 3600 * S_US;
     awake_us += 1;
-    TEST_ASSERT_EQUAL_UINT64(3602 * S_US + 1u, linux_clock_now_us(&sut));
+    TEST_ASSERT_EQUAL_UINT64(3602 * S_US + 1, linux_clock_now_us(&sut));
 }
 
 /* Shows: TIM-4 */

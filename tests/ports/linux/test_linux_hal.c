@@ -90,7 +90,7 @@ void test_the_parts_without_hardware(void) {
     TEST_ASSERT_EQUAL_UINT(4, hal_store_read_latch(&hal, read, 2));
     TEST_ASSERT_EQUAL_HEX8(2, read[1]);
     TEST_ASSERT_EQUAL_HEX8(0, read[2]);
-    TEST_ASSERT_FALSE(hal_store_write_latch(&hal, hal.sides, HAL_STORE_LATCH_SIZE_MAX + 1u));
+    TEST_ASSERT_FALSE(hal_store_write_latch(&hal, hal.sides, HAL_STORE_LATCH_SIZE_MAX + 1));
     TEST_ASSERT_FALSE(hal_store_write_latch(&hal, record, 0));
     TEST_ASSERT_FALSE(hal_store_append(&hal, record, sizeof record));
     TEST_ASSERT_EQUAL_UINT(0, hal_store_read_record(&hal, 0, read, sizeof read));
@@ -106,11 +106,11 @@ void test_the_clock_is_the_one_of_the_stamps(void) {
     const uint64_t after_us = linux_hal_now_us(&hal);
     vcan_pause_ms(100); /* it waits in the socket and must not look fresh */
     const port_received_t received = port_receive(&hal);
-    TEST_ASSERT_TRUE(received.at_us + 100u >= before_us); /* reading two clocks takes its time */
-    TEST_ASSERT_TRUE(received.at_us <= after_us + 2u);
-    TEST_ASSERT_EQUAL_UINT32(received.at_us / 1000u, received.frame.time_ms);
-    TEST_ASSERT_EQUAL_UINT16(received.at_us % 1000u, received.frame.time_us);
-    TEST_ASSERT_TRUE(hal_clock_now_ms(&hal) >= received.frame.time_ms + 100u);
+    TEST_ASSERT_TRUE(received.at_us + 100 >= before_us); /* reading two clocks takes its time */
+    TEST_ASSERT_TRUE(received.at_us <= after_us + 2);
+    TEST_ASSERT_EQUAL_UINT32(received.at_us / 1000, received.frame.time_ms);
+    TEST_ASSERT_EQUAL_UINT16(received.at_us % 1000, received.frame.time_us);
+    TEST_ASSERT_TRUE(hal_clock_now_ms(&hal) >= received.frame.time_ms + 100);
 }
 
 void test_each_side_receives_from_its_own_interface(void) {
@@ -164,9 +164,9 @@ void test_own_frames_are_reported_and_never_received(void) {
     TEST_ASSERT_EQUAL(HAL_CAN_VEHICLE, left.sides[0]);
     TEST_ASSERT_EQUAL_HEX32(0x065, left.frames[0].id);
     TEST_ASSERT_EQUAL_HEX8_ARRAY(frame.data, left.frames[0].data, 8);
-    TEST_ASSERT_EQUAL_UINT32(left.at_us[0] / 1000u, left.frames[0].time_ms);
-    TEST_ASSERT_TRUE(left.at_us[0] + 100u >= before_us);
-    TEST_ASSERT_TRUE(left.at_us[0] <= after_us + 2u);
+    TEST_ASSERT_EQUAL_UINT32(left.at_us[0] / 1000, left.frames[0].time_ms);
+    TEST_ASSERT_TRUE(left.at_us[0] + 100 >= before_us);
+    TEST_ASSERT_TRUE(left.at_us[0] <= after_us + 2);
     vcan_send(tester, 0x065, 8, frame.data); /* the same frame from another program of this computer */
     const port_received_t foreign = port_receive(&hal);
     TEST_ASSERT_EQUAL_HEX32(0x065, foreign.frame.id);

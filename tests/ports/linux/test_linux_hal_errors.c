@@ -175,7 +175,7 @@ void test_an_adapter_that_is_unplugged_and_plugged_in_again(void) {
     tester = vcan_open("vcan0");
     const uint64_t back_us = linux_hal_now_us(&hal);
     TEST_ASSERT_TRUE(run_until(HAL_CAN_ERROR_ACTIVE));
-    TEST_ASSERT_TRUE(linux_hal_now_us(&hal) - back_us < 1000000u);
+    TEST_ASSERT_TRUE(linux_hal_now_us(&hal) - back_us < 1000000);
     expect_status(HAL_CAN_ERROR_ACTIVE, 1, 0);
     TEST_ASSERT_TRUE(linux_hal_fd(&hal, HAL_CAN_VEHICLE) >= 0);
     port_run_ms(&hal, 5);
@@ -202,7 +202,7 @@ void test_looking_for_an_adapter_takes_no_time(void) {
         const uint64_t took_us = linux_hal_now_us(&hal) - before_us;
         quickest_us = (took_us < quickest_us) ? took_us : quickest_us;
     }
-    TEST_ASSERT_TRUE(quickest_us < 5000u);
+    TEST_ASSERT_TRUE(quickest_us < 5000);
 }
 
 void test_one_side_works_without_the_other(void) {

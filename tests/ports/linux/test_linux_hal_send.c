@@ -61,7 +61,7 @@ void test_frames_with_one_identifier_that_are_given_together_all_wait(void) {
         send_numbered(0x105, 1);
         send_numbered(0x105, 2);
         send_numbered(0x105, 3);
-    } while (linux_hal_now_us(&hal) - begun_us > 1000u);
+    } while (linux_hal_now_us(&hal) - begun_us > 1000);
     (void)port_drain(&hal);
     vcan_expect(tester, 0x10F, 1, (const uint8_t[8]){0});
     for (uint8_t i = 1; i < 4; i++) {
@@ -198,7 +198,7 @@ void test_the_age_of_waiting_frames_grows(void) {
     (void)port_drain(&hal);
     const uint32_t age_ms = pending_ms();
     TEST_ASSERT_TRUE(age_ms >= 30);
-    TEST_ASSERT_TRUE(age_ms <= (linux_hal_now_us(&hal) - taken_us) / 1000u);
+    TEST_ASSERT_TRUE(age_ms <= (linux_hal_now_us(&hal) - taken_us) / 1000);
 }
 
 /* Shows: SUP-7 */
@@ -238,7 +238,7 @@ void test_a_lost_echo_does_not_block_the_queue(void) {
     vcan_expect_nothing(tester);
     TEST_ASSERT_EQUAL_UINT(1, left.count);
     TEST_ASSERT_EQUAL_UINT32(0, pending_ms());
-    TEST_ASSERT_EQUAL_UINT16(2000u - received + 1u, port_status(&hal, HAL_CAN_VEHICLE).overrun_count);
+    TEST_ASSERT_EQUAL_UINT16(2000 - received + 1, port_status(&hal, HAL_CAN_VEHICLE).overrun_count);
 }
 
 void test_a_loss_before_a_frame_was_sent_does_not_affect_it(void) {
@@ -285,9 +285,9 @@ void test_a_port_that_finishes_tries_a_full_kernel_again(void) {
     linux_hal_finish(&hal);
     const uint64_t took_us = linux_hal_now_us(&hal) - began_us;
     TEST_ASSERT_EQUAL_UINT(1, left.count);
-    TEST_ASSERT_TRUE(took_us >= LINUX_HAL_FINISH_MS * 1000u); /* it ends after its limit, not earlier */
+    TEST_ASSERT_TRUE(took_us >= LINUX_HAL_FINISH_MS * 1000); /* it ends after its limit, not earlier */
     const unsigned tries = vcan_dropped() - before;
-    TEST_ASSERT_TRUE(tries > 1 && tries <= LINUX_HAL_FINISH_MS + 2u); /* one try a millisecond: no busy loop */
+    TEST_ASSERT_TRUE(tries > 1 && tries <= LINUX_HAL_FINISH_MS + 2); /* one try a millisecond: no busy loop */
 }
 
 void test_a_port_that_finishes_does_not_send_on_a_side_that_is_down(void) {

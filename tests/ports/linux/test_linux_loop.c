@@ -33,7 +33,7 @@ void tearDown(void) {
 static uint64_t now_us(void) {
     struct timespec now;
     TEST_ASSERT_EQUAL_INT(0, clock_gettime(CLOCK_MONOTONIC, &now));
-    return (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
+    return (uint64_t)now.tv_sec * 1000000 + (uint64_t)now.tv_nsec / 1000;
 }
 
 static void pause_ms(long ms) {
@@ -48,7 +48,7 @@ static uint64_t row_us(void) {
     TEST_ASSERT_EQUAL_HEX32(LINUX_LOOP_TICK, linux_loop_wait(&loop));
     const uint64_t begin_us = now_us();
     for (unsigned ticks = 0; ticks < ROW;) {
-        ticks += ((linux_loop_wait(&loop) & LINUX_LOOP_TICK) != 0) ? 1u : 0u;
+        ticks += ((linux_loop_wait(&loop) & LINUX_LOOP_TICK) != 0) ? 1 : 0;
     }
     return now_us() - begin_us;
 }
@@ -58,14 +58,14 @@ void test_a_tick_every_millisecond(void) {
     uint64_t shortest_us = UINT64_MAX;
     uint64_t sum_us = 0;
     unsigned rows = 0;
-    while (rows < ROWS_MAX && (rows < 10 || shortest_us > ROW * 1200u)) {
+    while (rows < ROWS_MAX && (rows < 10 || shortest_us > ROW * 1200)) {
         const uint64_t took_us = row_us();
         shortest_us = took_us < shortest_us ? took_us : shortest_us;
         sum_us += took_us;
         rows++;
     }
-    TEST_ASSERT_TRUE(shortest_us <= ROW * 1200u);
-    TEST_ASSERT_TRUE(sum_us >= (uint64_t)rows * (ROW - 1u) * 1000u);
+    TEST_ASSERT_TRUE(shortest_us <= ROW * 1200);
+    TEST_ASSERT_TRUE(sum_us >= (uint64_t)rows * (ROW - 1) * 1000);
 }
 
 void test_a_late_program_gets_one_tick_and_not_a_burst(void) {
@@ -129,7 +129,7 @@ static uint64_t earliest_phase_us(const linux_clock_t *clock) {
     uint64_t earliest_us = UINT64_MAX;
     for (unsigned i = 0; i < 100; i++) {
         (void)linux_loop_wait(&loop);
-        const uint64_t phase_us = linux_clock_now_us(clock) % 1000u;
+        const uint64_t phase_us = linux_clock_now_us(clock) % 1000;
         earliest_us = (phase_us < earliest_us) ? phase_us : earliest_us;
     }
     return earliest_us;
@@ -139,10 +139,10 @@ void test_ticks_fall_just_after_whole_milliseconds_of_a_clock(void) {
     linux_clock_t clock;
     linux_clock_start(&clock);
     for (unsigned i = 0; i < 4; i++) {
-        clock.start_ns -= 250000u; /* another clock each time, a quarter of a millisecond apart */
+        clock.start_ns -= 250000; /* another clock each time, a quarter of a millisecond apart */
         TEST_ASSERT_TRUE(linux_loop_align(&loop, linux_clock_now_us(&clock)));
         (void)linux_loop_wait(&loop); /* may have been due before */
-        TEST_ASSERT_TRUE(earliest_phase_us(&clock) < 240u);
+        TEST_ASSERT_TRUE(earliest_phase_us(&clock) < 240);
     }
 }
 

@@ -55,7 +55,7 @@ static void set_up(const char *interface, bool up) {
     (void)snprintf(request.ifr_name, sizeof request.ifr_name, "%s", interface);
     require(ioctl(asked, SIOCGIFFLAGS, &request) == 0, interface);
     const unsigned others = (unsigned)request.ifr_flags & ~(unsigned)IFF_UP;
-    request.ifr_flags = (short)(others | (up ? (unsigned)IFF_UP : 0u));
+    request.ifr_flags = (short)(others | (up ? (unsigned)IFF_UP : 0));
     require(ioctl(asked, SIOCSIFFLAGS, &request) == 0, interface);
     (void)close(asked);
     links_changed = true;
@@ -83,7 +83,7 @@ unsigned vcan_dropped(void) {
     char text[512] = "";
     FILE *output = popen("tc -s qdisc show dev vcan0", "r");
     TEST_ASSERT_NOT_NULL(output);
-    const size_t size = fread(text, 1, sizeof text - 1u, output);
+    const size_t size = fread(text, 1, sizeof text - 1, output);
     TEST_ASSERT_EQUAL_INT(0, pclose(output));
     text[size] = '\0';
     const char *dropped = strstr(text, "(dropped ");
@@ -123,7 +123,7 @@ static uint64_t stamp_of_a_frame(int stamped, int sender) {
     TEST_ASSERT_EQUAL_INT(sizeof received, recvmsg(stamped, &message, 0));
     TEST_ASSERT_NOT_NULL(CMSG_FIRSTHDR(&message));
     memcpy(&stamp, CMSG_DATA(CMSG_FIRSTHDR(&message)), sizeof stamp);
-    return (uint64_t)stamp.tv_sec * 1000000u + (uint64_t)stamp.tv_nsec / 1000u;
+    return (uint64_t)stamp.tv_sec * 1000000 + (uint64_t)stamp.tv_nsec / 1000;
 }
 
 static int bind_raw(int can_socket, const char *interface) {
@@ -157,7 +157,7 @@ void vcan_begin(void) {
     do {
         TEST_ASSERT_TRUE_MESSAGE(times++ < VCAN_SOON_MS / VCAN_SETTLED_MS, "the kernel does not stamp");
         before_us = vcan_real_us();
-    } while (stamp_of_a_frame(stamped, sender) >= before_us + VCAN_SETTLED_MS * 1000u);
+    } while (stamp_of_a_frame(stamped, sender) >= before_us + VCAN_SETTLED_MS * 1000);
     (void)close(sender);
 }
 
@@ -191,7 +191,7 @@ bool vcan_try(int tester, uint32_t can_id) {
 void vcan_send_fd(int tester, uint32_t can_id, uint8_t length) {
     struct canfd_frame frame = {.can_id = can_id, .len = length};
     for (unsigned i = 0; i < length; i++) {
-        frame.data[i] = (uint8_t)(i + 1u);
+        frame.data[i] = (uint8_t)(i + 1);
     }
     TEST_ASSERT_EQUAL_INT(sizeof frame, send(tester, &frame, sizeof frame, 0));
 }
@@ -238,11 +238,11 @@ void vcan_drain(int tester) {
 uint64_t vcan_real_us(void) {
     struct timespec now;
     TEST_ASSERT_EQUAL_INT(0, clock_gettime(CLOCK_REALTIME, &now));
-    return (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
+    return (uint64_t)now.tv_sec * 1000000 + (uint64_t)now.tv_nsec / 1000;
 }
 
 void vcan_pause_ms(unsigned ms) {
-    const struct timespec time = {.tv_sec = ms / 1000u, .tv_nsec = (long)(ms % 1000u) * 1000000};
+    const struct timespec time = {.tv_sec = ms / 1000, .tv_nsec = (long)(ms % 1000) * 1000000};
     (void)nanosleep(&time, NULL);
 }
 

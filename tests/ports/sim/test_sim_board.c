@@ -100,13 +100,13 @@ void test_emergency_stop_and_reset_button(void) {
 void test_the_second_clock_deviates_from_the_moment_of_the_change_on(void) {
     hal.board.has_second_clock = true;
     const uint32_t start_ms = second_at(1000);
-    TEST_ASSERT_EQUAL_UINT32(start_ms + 1000u, second_at(2000));
+    TEST_ASSERT_EQUAL_UINT32(start_ms + 1000, second_at(2000));
     hal.board.clock_permille = 60; /* the first clock is slow */
-    TEST_ASSERT_EQUAL_UINT32(start_ms + 2060u, second_at(3000));
+    TEST_ASSERT_EQUAL_UINT32(start_ms + 2060, second_at(3000));
     hal.board.clock_permille = -60;
-    TEST_ASSERT_EQUAL_UINT32(start_ms + 3000u, second_at(4000));
+    TEST_ASSERT_EQUAL_UINT32(start_ms + 3000, second_at(4000));
     hal.board.clock_permille = 0;
-    TEST_ASSERT_EQUAL_UINT32(start_ms + 4000u, second_at(5000));
+    TEST_ASSERT_EQUAL_UINT32(start_ms + 4000, second_at(5000));
 }
 
 /* No thousandth is lost between readings. */
@@ -118,7 +118,7 @@ void test_the_second_clock_read_at_every_tick(void) {
     for (uint32_t ms = 1; ms < 10000; ms++) {
         (void)second_at(ms);
     }
-    TEST_ASSERT_EQUAL_UINT32(start_ms + 10010u, second_at(10000));
+    TEST_ASSERT_EQUAL_UINT32(start_ms + 10010, second_at(10000));
 }
 
 /* Shows: HW-4, TIM-2 */

@@ -18,7 +18,7 @@ static void assert_frame_times(uint32_t bitrate, uint64_t end_us, uint64_t next_
     sim_bus_stats(bus, &stats);
     TEST_ASSERT_EQUAL_UINT64(2, stats.frames);
     TEST_ASSERT_EQUAL_UINT64(0, stats.errors);
-    TEST_ASSERT_EQUAL_UINT64(2u * next_us, stats.busy_us);
+    TEST_ASSERT_EQUAL_UINT64(2 * next_us, stats.busy_us);
 }
 
 void test_frames_take_their_time_at_each_bit_rate(void) {
@@ -90,15 +90,15 @@ void test_data_beats_remote_beats_extended(void) {
     sim_bus_run_until(bus, 5000);
     TEST_ASSERT_EQUAL_UINT(4, fixture.event_count);
     for (unsigned i = 0; i < 4; i++) {
-        TEST_ASSERT_EQUAL_HEX8(frames[3u - i].flags, fixture.events[i].flags);
+        TEST_ASSERT_EQUAL_HEX8(frames[3 - i].flags, fixture.events[i].flags);
         TEST_ASSERT_FALSE(fixture.events[i].error);
     }
 }
 
 void test_extended_identifiers_compete_by_all_their_bits(void) {
     const hal_can_frame_t frames[3] = {
-        {.id = (0x100u << 18) + 2u, .flags = HAL_CAN_EXTENDED},
-        {.id = (0x100u << 18) + 1u, .flags = HAL_CAN_EXTENDED},
+        {.id = (0x100u << 18) + 2, .flags = HAL_CAN_EXTENDED},
+        {.id = (0x100u << 18) + 1, .flags = HAL_CAN_EXTENDED},
         {.id = 0x101},
     };
     for (sim_bus_node_t node = 0; node < 3; node++) {
@@ -200,7 +200,7 @@ void test_a_full_receive_queue_counts_overruns_and_keeps_the_old_frames(void) {
     hal_can_frame_t frame;
     for (unsigned i = 0; i < 11; i++) { /* the queue holds 8 */
         send(&fixture, A, 0x100, 8, (uint8_t)i);
-        sim_bus_run_until(bus, (i + 1u) * 1000u);
+        sim_bus_run_until(bus, (i + 1) * 1000);
     }
     TEST_ASSERT_EQUAL_UINT16(3, status_of(&fixture, B).overrun_count);
     for (unsigned i = 0; i < 5; i++) {
@@ -242,14 +242,14 @@ void test_the_age_of_the_oldest_waiting_frame_is_reported(void) {
 }
 
 void test_nodes_and_taps_are_limited_and_configurations_checked(void) {
-    const sim_bus_node_config_t too_many_tx = {.tx_slots = SIM_BUS_TX_SLOTS_MAX + 1u};
-    const sim_bus_node_config_t too_many_rx = {.rx_slots = SIM_BUS_RX_SLOTS_MAX + 1u};
+    const sim_bus_node_config_t too_many_tx = {.tx_slots = SIM_BUS_TX_SLOTS_MAX + 1};
+    const sim_bus_node_config_t too_many_rx = {.rx_slots = SIM_BUS_RX_SLOTS_MAX + 1};
     TEST_ASSERT_EQUAL_UINT8(SIM_BUS_NO_NODE, sim_bus_attach(bus, &too_many_tx));
     TEST_ASSERT_EQUAL_UINT8(SIM_BUS_NO_NODE, sim_bus_attach(bus, &too_many_rx));
     const sim_bus_node_config_t largest = {.tx_slots = SIM_BUS_TX_SLOTS_MAX, .rx_slots = SIM_BUS_RX_SLOTS_MAX};
     TEST_ASSERT_EQUAL_UINT8(FIXTURE_NODES, sim_bus_attach(bus, &largest));
     TEST_ASSERT_EQUAL_UINT8(SIM_BUS_NO_NODE, sim_bus_attach(bus, &too_many_tx));
-    for (unsigned i = FIXTURE_NODES + 1u; i < SIM_BUS_NODES_MAX; i++) {
+    for (unsigned i = FIXTURE_NODES + 1; i < SIM_BUS_NODES_MAX; i++) {
         TEST_ASSERT_EQUAL_UINT8(i, sim_bus_attach(bus, NULL));
     }
     TEST_ASSERT_EQUAL_UINT8(SIM_BUS_NO_NODE, sim_bus_attach(bus, NULL));
@@ -380,16 +380,16 @@ void test_the_size_of_the_time_steps_makes_no_difference(void) {
     fixture_init(&other, 500000);
     for (uint64_t ms = 0; ms < 20; ms++) {
         for (sim_bus_node_t node = 0; node < 4; node++) {
-            send(&fixture, node, 0x100u + node * 3u, (uint8_t)(ms % 9u), 1);
-            send(&other, node, 0x100u + node * 3u, (uint8_t)(ms % 9u), 1);
+            send(&fixture, node, 0x100u + node * 3, (uint8_t)(ms % 9), 1);
+            send(&other, node, 0x100u + node * 3, (uint8_t)(ms % 9), 1);
         }
-        sim_bus_run_until(bus, (ms + 1u) * 1000u);
-        for (uint64_t us = ms * 1000u; us < (ms + 1u) * 1000u; us++) {
-            sim_bus_run_until(&other.bus, us + 1u);
+        sim_bus_run_until(bus, (ms + 1) * 1000);
+        for (uint64_t us = ms * 1000; us < (ms + 1) * 1000; us++) {
+            sim_bus_run_until(&other.bus, us + 1);
         }
     }
     TEST_ASSERT_EQUAL_UINT(fixture.event_count, other.event_count);
-    TEST_ASSERT_TRUE(fixture.event_count >= 70u);
+    TEST_ASSERT_TRUE(fixture.event_count >= 70);
     for (unsigned i = 0; i < fixture.event_count; i++) {
         TEST_ASSERT_EQUAL_UINT64(fixture.events[i].end_us, other.events[i].end_us);
         TEST_ASSERT_EQUAL_UINT8(fixture.events[i].sender, other.events[i].sender);

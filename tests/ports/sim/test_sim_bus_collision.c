@@ -88,7 +88,7 @@ void test_endless_collisions_end_in_bus_off(void) {
         round++;
         send(&fixture, A, 0x168, 1, 0x00);
         send(&fixture, B, 0x168, 1, 0x80);
-        sim_bus_run_until(bus, round * 10000u);
+        sim_bus_run_until(bus, round * 10000);
     }
     TEST_ASSERT_EQUAL_UINT(19, round);
     TEST_ASSERT_EQUAL_UINT16(1, status_of(&fixture, B).bus_off_count);

@@ -30,7 +30,7 @@ static sim_bus_t *const bus = &load.fixture.bus;
 static uint32_t seed;
 
 static uint32_t random_below(uint32_t limit) {
-    seed = seed * 1664525u + 1013904223u;
+    seed = seed * 1664525 + 1013904223;
     return (seed >> 8) % limit;
 }
 
@@ -52,7 +52,7 @@ static void take_out(const sim_bus_event_t *event, sim_bus_node_t node) {
             TEST_ASSERT_EQUAL_UINT32(load.waiting[i].number, number);
             TEST_ASSERT_TRUE(load.waiting[i].taken_us <= event->start_us);
             load.count--;
-            memmove(&load.waiting[i], &load.waiting[i + 1u], (load.count - i) * sizeof load.waiting[0]);
+            memmove(&load.waiting[i], &load.waiting[i + 1], (load.count - i) * sizeof load.waiting[0]);
             return;
         }
     }
@@ -64,16 +64,16 @@ static void watch(void *ctx, const sim_bus_event_t *event) {
     TEST_ASSERT_TRUE(event->start_us >= load.free_us);
     TEST_ASSERT_TRUE(event->end_us > event->start_us);
     TEST_ASSERT_EQUAL_UINT64(event->end_us, sim_bus_now_us(bus));
-    load.free_us = event->end_us + SIM_BUS_INTERFRAME_BITS * 2u;
+    load.free_us = event->end_us + SIM_BUS_INTERFRAME_BITS * 2;
     assert_won(event);
     if (event->error) {
         load.errors++;
         return;
     }
     load.arrived++;
-    load.merged += (event->senders & (event->senders - 1u)) != 0 ? 1u : 0u;
+    load.merged += (event->senders & (event->senders - 1)) != 0 ? 1 : 0;
     for (sim_bus_node_t node = 0; node < FIXTURE_NODES; node++) {
-        if ((event->senders >> node & 1u) != 0) {
+        if ((event->senders >> node & 1) != 0) {
             take_out(event, node);
         }
     }
@@ -96,7 +96,7 @@ static void send_random(uint32_t number) {
         send_as(B, 20, 7);
     } else {
         const sim_bus_node_t node = (sim_bus_node_t)random_below(FIXTURE_NODES);
-        send_as(node, random_below(10) * 8u + node, number);
+        send_as(node, random_below(10) * 8 + node, number);
     }
 }
 
@@ -125,7 +125,7 @@ void test_every_frame_arrives_once_in_order_and_the_lowest_first(void) {
             sim_bus_corrupt_all(bus, random_below(3));
         }
         for (uint32_t i = random_below(3); i > 0; i--) {
-            send_random(round * 4u + i);
+            send_random(round * 4 + i);
         }
         const uint64_t until_us = sim_bus_now_us(bus) + random_below(400);
         sim_bus_run_until(bus, until_us);
@@ -133,11 +133,11 @@ void test_every_frame_arrives_once_in_order_and_the_lowest_first(void) {
         TEST_ASSERT_EQUAL_UINT64(until_us, sim_bus_now_us(bus));
     }
     sim_bus_corrupt_all(bus, 0);
-    sim_bus_run_until(bus, sim_bus_now_us(bus) + 1000000u);
+    sim_bus_run_until(bus, sim_bus_now_us(bus) + 1000000);
     TEST_ASSERT_EQUAL_UINT(0, load.count);
-    TEST_ASSERT_TRUE(load.arrived > 5000u);
-    TEST_ASSERT_TRUE(load.merged > 100u);
-    TEST_ASSERT_TRUE(load.errors > 500u);
+    TEST_ASSERT_TRUE(load.arrived > 5000);
+    TEST_ASSERT_TRUE(load.merged > 100);
+    TEST_ASSERT_TRUE(load.errors > 500);
 }
 
 static void disturb(sim_bus_node_t node) {
@@ -175,8 +175,8 @@ static void disturb(sim_bus_node_t node) {
 static void assert_sane(void) {
     for (sim_bus_node_t node = 0; node < FIXTURE_NODES; node++) {
         const hal_can_status_t status = status_of(&load.fixture, node);
-        TEST_ASSERT_TRUE(sim_bus_waiting(bus, node) <= 8u);
-        TEST_ASSERT_TRUE(tec_of(&load.fixture, node) <= 300u && rec_of(&load.fixture, node) <= 255u);
+        TEST_ASSERT_TRUE(sim_bus_waiting(bus, node) <= 8);
+        TEST_ASSERT_TRUE(tec_of(&load.fixture, node) <= 300 && rec_of(&load.fixture, node) <= 255);
         TEST_ASSERT_TRUE(status.tx_pending_ms == 0 || sim_bus_waiting(bus, node) > 0);
         if (status.state == HAL_CAN_BUS_OFF) {
             TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(bus, node));
@@ -204,11 +204,11 @@ void test_any_disturbance_passes(void) {
         sim_bus_corrupt_sent(bus, node, 0);
         sim_bus_corrupt_received(bus, node, 0);
     }
-    sim_bus_run_until(bus, sim_bus_now_us(bus) + 1000u);
+    sim_bus_run_until(bus, sim_bus_now_us(bus) + 1000);
     for (sim_bus_node_t node = 0; node < FIXTURE_NODES; node++) {
         TEST_ASSERT_TRUE(send(&load.fixture, node, 0x100u + node, 8, 0));
     }
-    sim_bus_run_until(bus, sim_bus_now_us(bus) + 2000u);
+    sim_bus_run_until(bus, sim_bus_now_us(bus) + 2000);
     for (sim_bus_node_t node = 0; node < FIXTURE_NODES; node++) {
         TEST_ASSERT_EQUAL_UINT(3, received_by(&load.fixture, node));
     }

@@ -46,26 +46,26 @@ typedef struct {
 
 static void put_bit(stuffer_t *stuffer, unsigned bit) {
     stuffer->sent++;
-    stuffer->run = bit == stuffer->last ? stuffer->run + 1u : 1u;
+    stuffer->run = bit == stuffer->last ? stuffer->run + 1 : 1;
     stuffer->last = bit;
-    if (stuffer->run == 5u) {
+    if (stuffer->run == 5) {
         stuffer->sent++;
-        stuffer->run = 1u;
-        stuffer->last = 1u - bit;
+        stuffer->run = 1;
+        stuffer->last = 1 - bit;
     }
 }
 
 static void put_field(stuffer_t *stuffer, uint32_t value, unsigned width) {
     for (unsigned i = width; i-- > 0;) {
-        const unsigned bit = value >> i & 1u;
-        const unsigned top = stuffer->crc >> 14 & 1u;
-        stuffer->crc = (stuffer->crc << 1 & 0x7FFFu) ^ (bit != top ? 0x4599u : 0u);
+        const unsigned bit = value >> i & 1;
+        const unsigned top = stuffer->crc >> 14 & 1;
+        stuffer->crc = (stuffer->crc << 1 & 0x7FFFu) ^ (bit != top ? 0x4599u : 0);
         put_bit(stuffer, bit);
     }
 }
 
 static uint32_t actual_bits(const hal_can_frame_t *frame) {
-    stuffer_t stuffer = {.last = 2u};
+    stuffer_t stuffer = {.last = 2};
     put_field(&stuffer, 0, 1);
     if ((frame->flags & HAL_CAN_EXTENDED) != 0) {
         put_field(&stuffer, frame->id >> 18, 11);
@@ -80,25 +80,25 @@ static uint32_t actual_bits(const hal_can_frame_t *frame) {
         put_field(&stuffer, frame->data[i], 8);
     }
     for (uint32_t crc = stuffer.crc, i = 15; i-- > 0;) {
-        put_bit(&stuffer, crc >> i & 1u);
+        put_bit(&stuffer, crc >> i & 1);
     }
-    return stuffer.sent + 10u;
+    return stuffer.sent + 10;
 }
 
 static uint32_t next_random(uint32_t *state) {
-    *state = *state * 1664525u + 1013904223u;
+    *state = *state * 1664525 + 1013904223;
     return *state >> 8;
 }
 
 static hal_can_frame_t random_frame(uint32_t *state) {
     static const uint8_t STUFFY[4] = {0x00, 0xFF, 0x87, 0xC3}; /* bytes with long runs of equal bits */
-    hal_can_frame_t frame = {.length = (uint8_t)(next_random(state) % 9u)};
-    frame.flags = next_random(state) % 2u != 0 ? (uint8_t)HAL_CAN_EXTENDED : 0u;
+    hal_can_frame_t frame = {.length = (uint8_t)(next_random(state) % 9)};
+    frame.flags = next_random(state) % 2 != 0 ? (uint8_t)HAL_CAN_EXTENDED : 0;
     frame.id = next_random(state) & (frame.flags != 0 ? 0x1FFFFFu : 0x7Fu);
-    const bool stuffy = next_random(state) % 2u != 0;
+    const bool stuffy = next_random(state) % 2 != 0;
     for (unsigned i = 0; i < frame.length; i++) {
         const uint32_t random = next_random(state);
-        frame.data[i] = stuffy ? STUFFY[random % 4u] : (uint8_t)random;
+        frame.data[i] = stuffy ? STUFFY[random % 4] : (uint8_t)random;
     }
     return frame;
 }
@@ -107,12 +107,12 @@ static hal_can_frame_t random_frame(uint32_t *state) {
 void test_no_real_frame_is_longer(void) {
     uint32_t state = 1;
     uint32_t closest = UINT32_MAX;
-    for (unsigned i = 0; i < 200000u; i++) {
+    for (unsigned i = 0; i < 200000; i++) {
         const hal_can_frame_t frame = random_frame(&state);
         const uint32_t longest = sim_bus_frame_bits(&frame);
         const uint32_t actual = actual_bits(&frame);
         TEST_ASSERT_TRUE(actual <= longest);
         closest = longest - actual < closest ? longest - actual : closest;
     }
-    TEST_ASSERT_TRUE(closest <= 3u);
+    TEST_ASSERT_TRUE(closest <= 3);
 }

@@ -174,7 +174,7 @@ void test_on_a_bus_the_state_is_the_controllers(void) {
 /* Shows: TIM-2 */
 void test_the_clock_starts_anywhere_and_wraps(void) {
     hal_can_frame_t frame;
-    init_on_bus(&(sim_hal_config_t){.clock_start_ms = UINT32_MAX - 1u, .clock_phase_us = 700});
+    init_on_bus(&(sim_hal_config_t){.clock_start_ms = UINT32_MAX - 1, .clock_phase_us = 700});
     TEST_ASSERT_EQUAL_HEX32(0xFFFFFFFE, hal_clock_now_ms(&hal));
     run_until(299);
     TEST_ASSERT_EQUAL_HEX32(0xFFFFFFFE, hal_clock_now_ms(&hal));
@@ -253,7 +253,7 @@ void test_a_feed_that_comes_too_late_does_not_save(void) {
 }
 
 void test_the_period_of_the_watchdog_is_configured_and_it_can_be_off(void) {
-    init_on_bus(&(sim_hal_config_t){.watchdog_ms = 7, .clock_start_ms = UINT32_MAX - 3u});
+    init_on_bus(&(sim_hal_config_t){.watchdog_ms = 7, .clock_start_ms = UINT32_MAX - 3});
     run_until(7000);
     TEST_ASSERT_FALSE(sim_hal_poll(&hal));
     run_until(8000);
@@ -309,7 +309,7 @@ void test_a_reset_in_the_middle_of_everything(void) {
     TEST_ASSERT_EQUAL_UINT32(9, hal.safety_output.changed_ms);
     TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(&bus, hal.can[HAL_CAN_VEHICLE].node));
     TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(&ai_bus, hal.can[HAL_CAN_AI].node));
-    sim_hal_fail_at(&hal, hal.calls + 1u, 2, SIM_HAL_OP_ALL);
+    sim_hal_fail_at(&hal, hal.calls + 1, 2, SIM_HAL_OP_ALL);
     TEST_ASSERT_EQUAL_UINT32(9, hal_clock_now_ms(&hal)); /* the last value that could be read: at the reset */
     TEST_ASSERT_EQUAL_UINT32(0, status_of(HAL_CAN_AI).tx_pending_ms);
 }

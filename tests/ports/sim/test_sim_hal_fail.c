@@ -22,7 +22,7 @@ void setUp(void) {
 }
 
 static void fail_next(void) {
-    sim_hal_fail_at(&hal, hal.calls + 1u, 1, SIM_HAL_OP_ALL);
+    sim_hal_fail_at(&hal, hal.calls + 1, 1, SIM_HAL_OP_ALL);
 }
 
 static void assert_failed(sim_hal_op_t op, uint32_t failures) {
@@ -72,7 +72,7 @@ void test_each_index_hits_its_operation_and_no_other(void) {
         start();
         sim_hal_fail_at(&hal, index, 1, SIM_HAL_OP_ALL);
         (void)call_all();
-        assert_failed((sim_hal_op_t)(index - 1u), 1);
+        assert_failed((sim_hal_op_t)(index - 1), 1);
     }
 }
 

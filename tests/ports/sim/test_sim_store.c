@@ -28,13 +28,13 @@ void test_an_empty_store_holds_nothing(void) {
 }
 
 void test_the_latch_is_replaced_as_a_whole(void) {
-    uint8_t read[HAL_STORE_LATCH_SIZE_MAX + 1u] = {0};
-    uint8_t full[HAL_STORE_LATCH_SIZE_MAX + 1u];
+    uint8_t read[HAL_STORE_LATCH_SIZE_MAX + 1] = {0};
+    uint8_t full[HAL_STORE_LATCH_SIZE_MAX + 1];
     memset(full, 0x3C, sizeof full);
     TEST_ASSERT_TRUE(sim_store_write_latch(&store, full, HAL_STORE_LATCH_SIZE_MAX));
     TEST_ASSERT_EQUAL_size_t(HAL_STORE_LATCH_SIZE_MAX, sim_store_read_latch(&store, read, sizeof read));
     TEST_ASSERT_EQUAL_HEX8_ARRAY(full, read, HAL_STORE_LATCH_SIZE_MAX);
-    TEST_ASSERT_FALSE(sim_store_write_latch(&store, full, HAL_STORE_LATCH_SIZE_MAX + 1u));
+    TEST_ASSERT_FALSE(sim_store_write_latch(&store, full, HAL_STORE_LATCH_SIZE_MAX + 1));
     TEST_ASSERT_FALSE(sim_store_write_latch(&store, full, 0));
     TEST_ASSERT_TRUE(sim_store_write_latch(&store, "abc", 3));
     memset(read, 0, sizeof read);
@@ -62,15 +62,15 @@ void test_the_log_drops_the_oldest(void) {
 }
 
 void test_the_log_holds_what_it_says(void) {
-    static uint8_t record[SIM_STORE_RECORD_SIZE_MAX + 1u];
-    for (unsigned i = 0; i < SIM_STORE_RECORDS_MAX + 10u; i++) {
+    static uint8_t record[SIM_STORE_RECORD_SIZE_MAX + 1];
+    for (unsigned i = 0; i < SIM_STORE_RECORDS_MAX + 10; i++) {
         record[0] = (uint8_t)i;
         TEST_ASSERT_TRUE(sim_store_append(&store, record, SIM_STORE_RECORD_SIZE_MAX));
     }
     TEST_ASSERT_EQUAL_UINT32(SIM_STORE_RECORDS_MAX, store.count);
     TEST_ASSERT_EQUAL_size_t(SIM_STORE_RECORD_SIZE_MAX, sim_store_read_record(&store, 0, record, sizeof record));
     TEST_ASSERT_EQUAL_UINT8(10, record[0]);
-    TEST_ASSERT_FALSE(sim_store_append(&store, record, SIM_STORE_RECORD_SIZE_MAX + 1u));
+    TEST_ASSERT_FALSE(sim_store_append(&store, record, SIM_STORE_RECORD_SIZE_MAX + 1));
     TEST_ASSERT_FALSE(sim_store_append(&store, record, 0));
 }
 

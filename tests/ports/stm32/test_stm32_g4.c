@@ -13,13 +13,13 @@ uint32_t LL_RCC_IsActiveFlag_HSECSS(void) {
 }
 
 void LL_RCC_ClearFlag_HSECSS(void) {
-    clock_flag = 0u;
+    clock_flag = 0;
 }
 
 void setUp(void) {
     test_flash = (FLASH_TypeDef){0};
     test_syscfg = (SYSCFG_TypeDef){0};
-    clock_flag = 0u;
+    clock_flag = 0;
 }
 
 void tearDown(void) {
@@ -41,10 +41,10 @@ void test_an_nmi_without_a_flag(void) {
 }
 
 void test_an_nmi_of_the_oscillator(void) {
-    clock_flag = 1u;
+    clock_flag = 1;
     TEST_ASSERT_FALSE(zephyr_chip_expects_nmi(true, true));
     TEST_ASSERT_EQUAL_INT(HAL_END_CLOCK, zephyr_chip_reason_of_nmi());
-    TEST_ASSERT_EQUAL_UINT32(0u, clock_flag);
+    TEST_ASSERT_EQUAL_UINT32(0, clock_flag);
 }
 
 /* Expected while the log is read, and only then. */
@@ -64,15 +64,15 @@ void test_an_nmi_of_the_ram(void) {
 }
 
 void test_there_is_no_error_correction_of_ram(void) {
-    zephyr_chip_watch_ram(NULL, 0u);
+    zephyr_chip_watch_ram(NULL, 0);
     TEST_ASSERT_FALSE(zephyr_chip_ram_has_failed());
 }
 
 /* 45 steps of 3.08 ms from 0x6C to 0x3F are 139 ms. The first 10 ms are 3 steps. */
 void test_the_window_of_the_watchdog(void) {
     WWDG_TypeDef watchdog = {.CR = 0x6Cu, .CFR = 0x387Fu, .SR = 0x1u};
-    zephyr_chip_open_window((uintptr_t)&watchdog, 10u, 140u);
+    zephyr_chip_open_window((uintptr_t)&watchdog, 10, 140);
     TEST_ASSERT_EQUAL_HEX32(0x3A69u, watchdog.CFR); /* with the interrupt */
-    TEST_ASSERT_EQUAL_HEX32(0u, watchdog.SR);
+    TEST_ASSERT_EQUAL_HEX32(0, watchdog.SR);
     TEST_ASSERT_EQUAL_HEX32(0x6Cu, watchdog.CR);
 }

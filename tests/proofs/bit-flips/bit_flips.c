@@ -65,7 +65,7 @@ static sim_hal_sink_fn *judge_sent;
 /* After such a restart the status frame has the identifier of the built-in constants (FSM-9, TOP-3). */
 static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
     const uint32_t configured = testbed.rules.oracle.own_status_id;
-    if (is_found() && (frame->id == (uint32_t)BUILT_IN_STATUS_ID)) {
+    if (is_found() && (frame->id == BUILT_IN_STATUS_ID)) {
         testbed.rules.oracle.own_status_id = frame->id;
     }
     judge_sent(ctx, side, frame);
@@ -99,11 +99,11 @@ static void run_found(uint32_t ms) {
 }
 
 static void follow(unsigned bit) {
-    const bool for_long = (bit % (unsigned)LONG_EVERY) == (unsigned)(sum.moments % (unsigned)LONG_EVERY);
+    const bool for_long = (bit % LONG_EVERY) == (unsigned)(sum.moments % LONG_EVERY);
     testbed_run(1);
     if (!is_found()) {
         testbed_run(SHORT_MS);
-        sum.late += is_found() ? 1u : 0u;
+        sum.late += is_found() ? 1 : 0;
     }
     if (is_found()) {
         sum.detected++;
@@ -123,14 +123,14 @@ static void follow(unsigned bit) {
 }
 
 static void flip(unsigned bit) {
-    ((uint8_t *)&testbed.supervisor)[bit / 8u] ^= (uint8_t)(1u << (bit % 8u));
+    ((uint8_t *)&testbed.supervisor)[bit / 8] ^= (uint8_t)(1u << (bit % 8));
     harm_begin();
     sum.flips++;
-    sum.latched_flips += testbed_is_latched() ? 1u : 0u;
+    sum.latched_flips += testbed_is_latched() ? 1 : 0;
     follow(bit);
     sum.frames += testbed.rules.sent - saved.rules.sent;
     sum.resets += testbed.rules.resets - saved.rules.resets;
-    harm_report("%s, byte %u bit %u of %u bytes, after %u ms", situation, bit / 8u, bit % 8u,
+    harm_report("%s, byte %u bit %u of %u bytes, after %u ms", situation, bit / 8, bit % 8,
                 (unsigned)sizeof(agv_supervisor_t), (unsigned)(testbed.now_ms - saved.now_ms));
 }
 
@@ -147,7 +147,7 @@ static void flip_each_bit(const char *name, unsigned variant, unsigned state) {
     (void)snprintf(text, sizeof text, "variant %u, state %u, %s", variant, state, name);
     situation = text;
     testbed_save(&saved);
-    for (unsigned bit = (unsigned)(sum.moments % part.every); bit < (unsigned)BITS; bit += part.every) {
+    for (unsigned bit = (unsigned)(sum.moments % part.every); bit < BITS; bit += part.every) {
         testbed_restore(&saved);
         flip(bit);
     }
@@ -229,8 +229,8 @@ static void flip_while_the_button_is_held(unsigned variant) {
 }
 
 static void flip_in_all_cases(void) {
-    for (unsigned variant = 0; variant < (unsigned)TESTBED_VARIANTS; variant++) {
-        for (unsigned state = 0; state < (unsigned)TESTBED_STATES; state++) {
+    for (unsigned variant = 0; variant < TESTBED_VARIANTS; variant++) {
+        for (unsigned state = 0; state < TESTBED_STATES; state++) {
             flip_within_a_cycle(variant, state);
         }
         flip_while_a_command_waits(variant, 3);
@@ -262,5 +262,5 @@ int main(int argc, char **argv) {
     (void)printf("%u bits in %llu situations: %llu flips, %llu detected, %llu harmless, forbidden: %llu\n",
                  (unsigned)BITS, (unsigned long long)sum.moments, (unsigned long long)sum.flips,
                  (unsigned long long)sum.detected, (unsigned long long)sum.harmless, (unsigned long long)harm_count);
-    return ((harm_count == 0u) && (sum.moments > 0u)) ? 0 : 1;
+    return ((harm_count == 0) && (sum.moments > 0)) ? 0 : 1;
 }

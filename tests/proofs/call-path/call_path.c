@@ -49,7 +49,7 @@ static void send(traffic_message_t *message) {
 }
 
 static void step(void) {
-    for (unsigned i = 0; i < (unsigned)TRAFFIC_MESSAGES; i++) {
+    for (unsigned i = 0; i < TRAFFIC_MESSAGES; i++) {
         if (traffic_is_due(&traffic[i], now_ms)) {
             send(&traffic[i]);
         }

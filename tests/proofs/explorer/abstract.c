@@ -41,39 +41,39 @@ static uint64_t latched_timers(void) {
     const agv_reset_button_t *reset = &core()->reset_button;
     const agv_confirmation_t *sums = &core()->confirmation;
     uint64_t set = LATCHED;
-    if (core()->machine.state == (uint8_t)AGV_STATE_SAFE) {
-        set |= EVENTS | ((reset->began_after && !reset->answered) ? (TIMER(PRESS) | TIMER(PRESS_LONG)) : 0u);
+    if (core()->machine.state == AGV_STATE_SAFE) {
+        set |= EVENTS | ((reset->began_after && !reset->answered) ? (TIMER(PRESS) | TIMER(PRESS_LONG)) : 0);
     }
-    set |= core()->stopping.stood ? 0u : TIMER(STOP);
-    set |= ((sums->off.sum_ms | sums->park.sum_ms) != 0u) ? TIMER(CONFIRMED) : 0u;
+    set |= core()->stopping.stood ? 0 : TIMER(STOP);
+    set |= ((sums->off.sum_ms | sums->park.sum_ms) != 0) ? TIMER(CONFIRMED) : 0;
     return set;
 }
 
 static uint64_t timers(void) {
-    const bool waits_for_park = core()->config.park == (uint16_t)AGV_PARK_AT_STANDSTILL;
-    const uint64_t park = waits_for_park ? (TIMER(PARK_WAIT) | TIMER(WHEELS_SLOW)) : 0u;
+    const bool waits_for_park = core()->config.park == AGV_PARK_AT_STANDSTILL;
+    const uint64_t park = waits_for_park ? (TIMER(PARK_WAIT) | TIMER(WHEELS_SLOW)) : 0;
     switch (core()->machine.state) {
     case AGV_STATE_INIT:
         return ALWAYS | IN_INIT | EVENTS | park;
     case AGV_STATE_STANDBY:
     case AGV_STATE_ACTIVE:
-        return ALWAYS | SUPERVISING | (agv_mode_is_engaged(&core()->mode) ? WHILE_ENGAGED : 0u);
+        return ALWAYS | SUPERVISING | (agv_mode_is_engaged(&core()->mode) ? WHILE_ENGAGED : 0);
     default:
         return ALWAYS | latched_timers() | park;
     }
 }
 
 static bool runs(unsigned timer) {
-    return core()->timers.phase[timer] == (uint8_t)AGV_TIMER_RUNNING;
+    return core()->timers.phase[timer] == AGV_TIMER_RUNNING;
 }
 
 /* The running timers of a set that will reach their limit within the given time. */
 static uint64_t timers_that_expire_within(uint64_t set, uint32_t ms) {
     agv_timers_t copy = core()->timers;
     uint64_t over = 0;
-    agv_timers_advance(&copy, &core()->config, copy.now_ms + ms, 0u);
-    for (unsigned i = 0; i < (unsigned)AGV_TIMER_COUNT; i++) {
-        if ((((set >> i) & 1u) != 0u) && runs(i) && agv_timer_reached(&copy, i)) {
+    agv_timers_advance(&copy, &core()->config, copy.now_ms + ms, 0);
+    for (unsigned i = 0; i < AGV_TIMER_COUNT; i++) {
+        if ((((set >> i) & 1) != 0) && runs(i) && agv_timer_reached(&copy, i)) {
             over |= UINT64_C(1) << i;
         }
     }
@@ -99,11 +99,11 @@ static unsigned full_next(void) {
                                                   config->throttle_in_park_ms};
     unsigned full = 0;
     if (agv_state_is_latched((agv_state_t)c->machine.state)) {
-        full |= (c->confirmation.off.sum_ms + 1u == config->confirm_timeout_ms) ? 1u : 0u;
-        full |= (c->confirmation.park.sum_ms + 1u == config->park_confirm_timeout_ms) ? 2u : 0u;
-        full |= (all_held_ms() + 1u == config->reset_hold_ms) ? 4u : 0u;
+        full |= (c->confirmation.off.sum_ms + 1 == config->confirm_timeout_ms) ? 1 : 0;
+        full |= (c->confirmation.park.sum_ms + 1 == config->park_confirm_timeout_ms) ? 2 : 0;
+        full |= (all_held_ms() + 1 == config->reset_hold_ms) ? 4 : 0;
     } else if (agv_mode_is_engaged(&c->mode)) {
-        for (unsigned i = 0; i < (unsigned)AGV_BUDGET_SPEED; i++) {
+        for (unsigned i = 0; i < AGV_BUDGET_SPEED; i++) {
             full |= (c->motion_checks.budgets[i].value_ms + 1u == limits_ms[i]) ? (8u << i) : 0u;
         }
     } else {
@@ -115,14 +115,14 @@ static unsigned full_next(void) {
 /* The first time that expires with the next tick; 0: none. */
 static uint8_t first_timer_that_expires_next(void) {
     const uint64_t set = timers_that_expire_within(timers(), 1);
-    for (unsigned i = 0; i < (unsigned)AGV_TIMER_COUNT; i++) {
-        if (((set >> i) & 1u) != 0u) {
-            return (uint8_t)(i + 1u);
+    for (unsigned i = 0; i < AGV_TIMER_COUNT; i++) {
+        if (((set >> i) & 1) != 0) {
+            return (uint8_t)(i + 1);
         }
     }
-    for (unsigned i = 0; i < (unsigned)AGV_BUDGET_SPEED + 3u; i++) {
-        if (((full_next() >> i) & 1u) != 0u) {
-            return (uint8_t)((unsigned)AGV_TIMER_COUNT + 1u + i);
+    for (unsigned i = 0; i < AGV_BUDGET_SPEED + 3; i++) {
+        if (((full_next() >> i) & 1) != 0) {
+            return (uint8_t)((unsigned)AGV_TIMER_COUNT + 1 + i);
         }
     }
     return 0;
@@ -131,10 +131,10 @@ static uint8_t first_timer_that_expires_next(void) {
 static uint64_t running(void) {
     const uint64_t set = timers();
     uint64_t some = 0;
-    for (unsigned i = 0; i < (unsigned)AGV_TIMER_COUNT; i++) {
-        some |= ((((set >> i) & 1u) != 0u) && runs(i)) ? (UINT64_C(1) << i) : 0u;
+    for (unsigned i = 0; i < AGV_TIMER_COUNT; i++) {
+        some |= ((((set >> i) & 1) != 0) && runs(i)) ? (UINT64_C(1) << i) : 0;
     }
-    for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
+    for (unsigned m = 0; m < TRAFFIC_MESSAGES; m++) {
         if (model_flows(m) && !testbed.traffic[m].frozen) {
             some &= ~(UINT64_C(1) << ((unsigned)AGV_TIMER_MESSAGE + m)); /* restarted by its own frames */
         }
@@ -153,7 +153,7 @@ uint32_t abstract_horizon_ms(void) {
     uint32_t ms = 0;
     for (unsigned i = 0; i < sizeof HORIZONS_MS / sizeof HORIZONS_MS[0]; i++) {
         ms = HORIZONS_MS[i];
-        if ((timers_that_expire_within(set, ms) == set) && ((ms >= (uint32_t)COUNTED_MS) || !counts())) {
+        if ((timers_that_expire_within(set, ms) == set) && ((ms >= COUNTED_MS) || !counts())) {
             break;
         }
     }
@@ -175,7 +175,7 @@ static uint8_t phase(unsigned timer) {
 }
 
 static uint8_t phases(unsigned a, unsigned b, unsigned c) {
-    return (uint8_t)(phase(a) | (phase(b) << 2u) | (phase(c) << 4u));
+    return (uint8_t)(phase(a) | (phase(b) << 2) | (phase(c) << 4));
 }
 
 /* A value reduced to three: zero, in between, full. */
@@ -183,7 +183,7 @@ static uint8_t zero_part_or_full(uint32_t value, bool full) {
     if (full) {
         return 2;
     }
-    return (value != 0u) ? 1 : 0;
+    return (value != 0) ? 1 : 0;
 }
 
 static uint8_t worst(uint8_t a, uint8_t b) {
@@ -209,7 +209,7 @@ static uint8_t worst_score(void) {
 
 static uint8_t worst_budget(void) {
     uint8_t most = 0;
-    for (unsigned i = 0; i < (unsigned)AGV_BUDGET_SPEED; i++) {
+    for (unsigned i = 0; i < AGV_BUDGET_SPEED; i++) {
         const agv_budget_t *b = &core()->motion_checks.budgets[i];
         most = worst(most, zero_part_or_full(b->value_ms, b->present));
     }
@@ -219,8 +219,8 @@ static uint8_t worst_budget(void) {
 /* Engagements that count for MODE_FLAPPING. */
 static uint8_t engagements(void) {
     uint8_t count = 0;
-    for (unsigned i = (unsigned)AGV_TIMER_ENGAGEMENT_1; i <= (unsigned)AGV_TIMER_ENGAGEMENT_3; i++) {
-        count = (uint8_t)(count + (runs(i) ? 1u : 0u));
+    for (unsigned i = (unsigned)AGV_TIMER_ENGAGEMENT_1; i <= AGV_TIMER_ENGAGEMENT_3; i++) {
+        count = (uint8_t)(count + (runs(i) ? 1 : 0));
     }
     return count;
 }
@@ -231,10 +231,10 @@ static uint8_t engagements(void) {
  */
 static uint8_t press(void) {
     const agv_reset_button_t *reset = &core()->reset_button;
-    if (reset->button != (uint8_t)AGV_BUTTON_DOWN) {
+    if (reset->button != AGV_BUTTON_DOWN) {
         return reset->was_up ? 0 : 5;
     }
-    if (!reset->began_after || (core()->machine.state != (uint8_t)AGV_STATE_SAFE)) {
+    if (!reset->began_after || (core()->machine.state != AGV_STATE_SAFE)) {
         return reset->began_after ? 2 : 1;
     }
     if (reset->answered) {
@@ -273,7 +273,7 @@ static bool is_holdable(void) {
 
 static bool waits_to_send(void) {
     bool waits = false;
-    for (unsigned i = 0; i < (unsigned)AGV_COMMAND_COUNT; i++) {
+    for (unsigned i = 0; i < AGV_COMMAND_COUNT; i++) {
         waits = waits || agv_timer_is_started(&core()->timers, (unsigned)AGV_TIMER_TX_TURN_SIGNAL + i);
     }
     return waits || agv_timer_is_started(&core()->timers, AGV_TIMER_TX_STATUS) ||
@@ -285,8 +285,8 @@ static void always(abstract_t *key) {
     const sim_hal_can_t *can = testbed.hal.can;
     const bool whats[] = {agv_liveness_alive(&c->liveness, AGV_NODE_VCU),
                           agv_liveness_alive(&c->liveness, AGV_NODE_EPS),
-                          (c->machine.state == (uint8_t)AGV_STATE_INIT) && messages_fresh(),
-                          c->transmitter.kept != 0u,
+                          (c->machine.state == AGV_STATE_INIT) && messages_fresh(),
+                          c->transmitter.kept != 0,
                           waits_to_send(),
                           can[HAL_CAN_VEHICLE].full,
                           can[HAL_CAN_AI].full};
@@ -294,62 +294,62 @@ static void always(abstract_t *key) {
     const bool goes_by_gear =
         agv_state_is_latched((agv_state_t)c->machine.state) || (supervises && agv_mode_is_engaged(&c->mode));
     const bool more[] = {agv_supervisor_output_closed(&testbed.supervisor),
-                         model.button && (c->machine.state != (uint8_t)AGV_STATE_INIT),
-                         goes_by_gear && (model.gear == (uint8_t)MODEL_P),
+                         model.button && (c->machine.state != AGV_STATE_INIT),
+                         goes_by_gear && (model.gear == MODEL_P),
                          model.ai_off,
                          model.bad_latch,
                          model.stalled,
                          !abstract_coarse && model_wrapped(),
-                         (phase(AGV_TIMER_WATCHDOG_FED) == (uint8_t)AGV_TIMER_REACHED)};
+                         (phase(AGV_TIMER_WATCHDOG_FED) == AGV_TIMER_REACHED)};
     key->byte[0] = c->machine.state;
     key->byte[1] = supervises ? model.defect : DEFECT_ROWS[model.defect].like;
     key->byte[2] = bits(whats, 7);
     key->byte[3] = bits(more, 8);
-    key->byte[4] = (uint8_t)(c->mode.bits | phase(AGV_TIMER_BOTH_MODES) | (c->mode.engaged ? 4u : 0u) |
-                             (c->mode.manual ? 8u : 0u));
-    if ((c->machine.state == (uint8_t)AGV_STATE_INIT) && !c->mode.manual) {
+    key->byte[4] =
+        (uint8_t)(c->mode.bits | phase(AGV_TIMER_BOTH_MODES) | (c->mode.engaged ? 4 : 0) | (c->mode.manual ? 8 : 0));
+    if ((c->machine.state == AGV_STATE_INIT) && !c->mode.manual) {
         key->byte[4] = 0;
     }
-    key->byte[5] = (uint8_t)(model.bus | (phase(AGV_TIMER_BUS_OFF) << 2u));
+    key->byte[5] = (uint8_t)(model.bus | (phase(AGV_TIMER_BUS_OFF) << 2));
     key->byte[6] = first_timer_that_expires_next();
 }
 
 static void in_init(abstract_t *key) {
-    const bool whats[] = {core()->machine.startup_reported, core()->faults.summary.cause != (uint8_t)AGV_FAULT_NONE,
-                          core()->faults.summary.ai_cause != (uint8_t)AGV_FAULT_NONE, core()->machine.park_released};
+    const bool whats[] = {core()->machine.startup_reported, core()->faults.summary.cause != AGV_FAULT_NONE,
+                          core()->faults.summary.ai_cause != AGV_FAULT_NONE, core()->machine.park_released};
     key->byte[8] = bits(whats, 4);
     key->byte[9] = phases(AGV_TIMER_INIT_GOOD, AGV_TIMER_STARTUP, AGV_TIMER_STARTUP);
 }
 
 static void supervising(abstract_t *key) {
     const agv_core_t *c = core();
-    const bool whats[] = {c->status_checks.ai_alarm_armed, c->faults.summary.ai_cause != (uint8_t)AGV_FAULT_NONE,
+    const bool whats[] = {c->status_checks.ai_alarm_armed, c->faults.summary.ai_cause != AGV_FAULT_NONE,
                           c->transmitter.throttle_0_waits};
-    key->byte[8] = (uint8_t)(bits(whats, 3) | (engagements() << 4u) | (phase(AGV_TIMER_DISENGAGED) << 6u));
-    key->byte[9] = (uint8_t)(c->liveness.heartbeats[AGV_NODE_AI].state | (phase(AGV_TIMER_NO_MODE) << 4u));
+    key->byte[8] = (uint8_t)(bits(whats, 3) | (engagements() << 4) | (phase(AGV_TIMER_DISENGAGED) << 6));
+    key->byte[9] = (uint8_t)(c->liveness.heartbeats[AGV_NODE_AI].state | (phase(AGV_TIMER_NO_MODE) << 4));
     if (agv_mode_is_engaged(&c->mode)) {
         key->byte[10] = phases(AGV_TIMER_ENGAGED, AGV_TIMER_AI_NEVER_SEEN, AGV_TIMER_MESSAGE_GEAR_COMMAND);
         key->byte[11] =
-            (uint8_t)(phase(AGV_TIMER_MESSAGE_STEERING_COMMAND) | (worst_score() << 2u) | (worst_budget() << 4u));
+            (uint8_t)(phase(AGV_TIMER_MESSAGE_STEERING_COMMAND) | (worst_score() << 2) | (worst_budget() << 4));
     }
 }
 
 static void in_latched(abstract_t *key) {
     const agv_core_t *c = core();
     const agv_state_machine_t *m = &c->machine;
-    const bool waits = (c->config.park == (uint16_t)AGV_PARK_AT_STANDSTILL) && !m->park_released;
+    const bool waits = (c->config.park == AGV_PARK_AT_STANDSTILL) && !m->park_released;
     const bool whats[] = {m->park_released,
                           is_holdable(),
-                          m->unresettable != (uint8_t)AGV_FAULT_NONE,
-                          model.wheels_turn && (waits || (standstill_since_the_trip() != 0u)),
-                          c->faults.summary.cause != (uint8_t)AGV_FAULT_NONE,
-                          c->faults.summary.ai_cause != (uint8_t)AGV_FAULT_NONE,
+                          m->unresettable != AGV_FAULT_NONE,
+                          model.wheels_turn && (waits || (standstill_since_the_trip() != 0)),
+                          c->faults.summary.cause != AGV_FAULT_NONE,
+                          c->faults.summary.ai_cause != AGV_FAULT_NONE,
                           all_held_ms() >= c->config.reset_hold_ms};
     key->byte[8] = bits(whats, 7);
     if (abstract_coarse) {
-        key->byte[9] = (uint8_t)(press() | (worst(unconfirmed(), (standstill_since_the_trip() == 2u) ? 2u : 0u) << 5u));
+        key->byte[9] = (uint8_t)(press() | (worst(unconfirmed(), (standstill_since_the_trip() == 2) ? 2 : 0) << 5));
     } else {
-        key->byte[9] = (uint8_t)(press() | (standstill_since_the_trip() << 3u) | (unconfirmed() << 5u));
+        key->byte[9] = (uint8_t)(press() | (standstill_since_the_trip() << 3) | (unconfirmed() << 5));
     }
 }
 

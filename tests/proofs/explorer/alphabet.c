@@ -23,7 +23,7 @@ static bool always(unsigned how) {
 
 static bool gateway(unsigned how) {
     (void)how;
-    return testbed.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    return testbed.config.topology == AGV_TOPOLOGY_GATEWAY;
 }
 
 /* ---- Time ---- */
@@ -57,13 +57,13 @@ static bool other_mode(unsigned mode) {
 }
 
 static void apply_button(unsigned down) {
-    model.button = down != 0u;
+    model.button = down != 0;
     model_apply_defect();
     model_run_past(M_VEHICLE);
 }
 
 static bool other_button(unsigned down) {
-    return (model.button != (down != 0u)) && model_flows(M_VEHICLE);
+    return (model.button != (down != 0)) && model_flows(M_VEHICLE);
 }
 
 static void apply_gear(unsigned gear) {
@@ -77,14 +77,14 @@ static bool other_gear(unsigned gear) {
 }
 
 static void apply_wheels(unsigned turn) {
-    model.wheels_turn = turn != 0u;
+    model.wheels_turn = turn != 0;
     model.wheels_ms = testbed.now_ms;
     model_apply_defect();
     model_run_past(M_WHEELS);
 }
 
 static bool other_wheels(unsigned turn) {
-    return (model.wheels_turn != (turn != 0u)) && model_flows(M_WHEELS);
+    return (model.wheels_turn != (turn != 0)) && model_flows(M_WHEELS);
 }
 
 bool alphabet_pairs;
@@ -92,12 +92,12 @@ bool alphabet_pairs;
 /* Whether a controller or the stored latch has a trouble. */
 static bool has_hal_defect(void) {
     const sim_hal_can_t *can = testbed.hal.can;
-    return (model.bus != (uint8_t)BUS_FINE) || model.ai_off || model.stalled || model.bad_latch ||
-           can[HAL_CAN_VEHICLE].full || can[HAL_CAN_AI].full;
+    return (model.bus != BUS_FINE) || model.ai_off || model.stalled || model.bad_latch || can[HAL_CAN_VEHICLE].full ||
+           can[HAL_CAN_AI].full;
 }
 
 static bool has_defect(void) {
-    return model.defect != (uint8_t)DEFECT_NONE;
+    return model.defect != DEFECT_NONE;
 }
 
 /* Only one defect or trouble exists at a time. With `alphabet_pairs` one of each may exist. */
@@ -111,14 +111,14 @@ static bool may_have_hal_defect(void) {
 
 static void apply_defect(unsigned defect) {
     model.defect = (uint8_t)defect;
-    model.foreign_ms = testbed.now_ms + 1u;
+    model.foreign_ms = testbed.now_ms + 1;
     model.defect_ms = testbed.now_ms;
     model_apply_defect();
     model_run(1);
 }
 
 static bool other_defect(unsigned defect) {
-    return (defect == (unsigned)DEFECT_NONE) ? has_defect() : may_have_defect();
+    return (defect == DEFECT_NONE) ? has_defect() : may_have_defect();
 }
 
 /* A silent or frozen node sends one frame just before the tick. */
@@ -143,7 +143,7 @@ static bool can_speak(unsigned how) {
 enum { S_GEAR, S_SHORT, S_SIGNALS, S_FAULT, S_MALFORMED, S_OTHER_SET, S_AI_SIDE };
 
 static uint32_t signal_id(bool other) {
-    const bool table = testbed.config.id_set == (uint16_t)AGV_ID_SET_TABLE;
+    const bool table = testbed.config.id_set == AGV_ID_SET_TABLE;
     return (table != other) ? 0x201u : 0x43Fu;
 }
 
@@ -156,12 +156,12 @@ static void malformed(void) {
     static const uint8_t FLAGS[] = {HAL_CAN_EXTENDED, HAL_CAN_REMOTE, HAL_CAN_FD, HAL_CAN_ERROR};
     hal_can_frame_t frames[4];
     memset(frames, 0, sizeof frames);
-    for (unsigned i = 0; i < 4u; i++) {
-        frames[i].id = ((i % 2u) == 0u) ? 0x168u : 0x167u;
+    for (unsigned i = 0; i < 4; i++) {
+        frames[i].id = ((i % 2) == 0) ? 0x168u : 0x167u;
         frames[i].flags = FLAGS[i];
         frames[i].length = 8;
-        frames[i].data[0] = (FLAGS[i] == (uint8_t)HAL_CAN_REMOTE) ? (uint8_t)0 : (uint8_t)MODEL_D;
-        frames[i].data[7] = (FLAGS[i] == (uint8_t)HAL_CAN_REMOTE) ? (uint8_t)0 : (uint8_t)0xFF;
+        frames[i].data[0] = (FLAGS[i] == HAL_CAN_REMOTE) ? (uint8_t)0 : (uint8_t)MODEL_D;
+        frames[i].data[7] = (FLAGS[i] == HAL_CAN_REMOTE) ? (uint8_t)0 : (uint8_t)0xFF;
     }
     model_deliver(HAL_CAN_VEHICLE, frames, 4);
 }
@@ -211,8 +211,8 @@ static void apply_bus(unsigned bus) {
 }
 
 static bool other_bus(unsigned bus) {
-    const bool stays = (model.bus == (uint8_t)BUS_PASSIVE) || (model.bus == (uint8_t)BUS_DEAD);
-    return (bus == (unsigned)BUS_FINE) ? stays : may_have_hal_defect();
+    const bool stays = (model.bus == BUS_PASSIVE) || (model.bus == BUS_DEAD);
+    return (bus == BUS_FINE) ? stays : may_have_hal_defect();
 }
 
 static void controller(unsigned how) {
@@ -222,19 +222,19 @@ static void controller(unsigned how) {
         break;
     case C_FULL:
     case C_FREE:
-        testbed_disturb(HAL_CAN_VEHICLE, 1, (how == (unsigned)C_FULL) ? 1 : 0);
+        testbed_disturb(HAL_CAN_VEHICLE, 1, (how == C_FULL) ? 1 : 0);
         break;
     case C_STALL:
     case C_FLOW:
-        model.stalled = how == (unsigned)C_STALL;
+        model.stalled = how == C_STALL;
         testbed_disturb(HAL_CAN_VEHICLE, 2, 0);
         break;
     case C_AI_OFF:
     case C_AI_BACK:
-        model_set_ai_off(how == (unsigned)C_AI_OFF);
+        model_set_ai_off(how == C_AI_OFF);
         break;
     default:
-        testbed_disturb(HAL_CAN_AI, 1, (how == (unsigned)C_AI_FULL) ? 1 : 0);
+        testbed_disturb(HAL_CAN_AI, 1, (how == C_AI_FULL) ? 1 : 0);
         break;
     }
     model_run(1);

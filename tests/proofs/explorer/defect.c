@@ -108,8 +108,8 @@ void defect_apply(defect_t defect) {
         }
     }
     if (defect == DEFECT_MODE_FLAPS) {
-        const uint64_t period = (testbed.now_ms - model.defect_ms) / (uint64_t)FLAP_MS;
-        traffic_mode(testbed.traffic, (period % 2u == 0u) ? MODEL_ENGAGED : MODEL_MANUAL);
+        const uint64_t period = (testbed.now_ms - model.defect_ms) / FLAP_MS;
+        traffic_mode(testbed.traffic, (period % 2 == 0) ? MODEL_ENGAGED : MODEL_MANUAL);
     }
     testbed.receive_path_dead = defect == DEFECT_RECEIVE_DEAD;
 }

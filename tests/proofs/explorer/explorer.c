@@ -56,7 +56,7 @@ enum { FOLLOW_MS = 8 };
 
 /* After a symbol without a new state, run on to check its consequences, such as an answer that is still due. */
 static void follow(void) {
-    for (unsigned ms = 0; (ms < (unsigned)FOLLOW_MS) && (model_broken()[0] == '\0'); ms++) {
+    for (unsigned ms = 0; (ms < FOLLOW_MS) && (model_broken()[0] == '\0'); ms++) {
         model_run(1);
     }
 }
@@ -82,7 +82,7 @@ static void report_broken(uint32_t state, unsigned symbol) {
     (void)printf("HARM: depth %u, %u ms: %s\n", length, (unsigned)model_now_ms(), model_broken());
     (void)printf("  after %u states, in: %s\n  by:", (unsigned)visited_states(), model_variant->name);
     for (unsigned i = 0; i < length; i++) {
-        (void)printf("%s %s", (i == 0u) ? "" : ",", alphabet_name(path[i]));
+        (void)printf("%s %s", (i == 0) ? "" : ",", alphabet_name(path[i]));
     }
     (void)printf("\n");
 }
@@ -130,7 +130,7 @@ static bool search(const model_variant_t *variant) {
             good = false;
         }
     }
-    const unsigned depth = visited_at(done - 1u)->depth;
+    const unsigned depth = visited_at(done - 1)->depth;
     sum.states += visited_states();
     sum.depth = (depth > sum.depth) ? depth : sum.depth;
     (void)printf("%-84s %8u states %9llu transitions, depth %2u, %4u s%s\n", variant->name, (unsigned)visited_states(),
@@ -143,17 +143,17 @@ static bool search(const model_variant_t *variant) {
 static unsigned number(const char *text) {
     char *end = NULL;
     const unsigned long value = strtoul(text, &end, 10);
-    return ((end == text) || (*end != '\0')) ? 0u : (unsigned)value;
+    return ((end == text) || (*end != '\0')) ? 0 : (unsigned)value;
 }
 
 static bool take_option(const char *name, const char *value) {
     if (strcmp(name, "--variant") == 0) {
         option.variant = (int)number(value);
-        return option.variant < (int)MODEL_VARIANTS;
+        return option.variant < MODEL_VARIANTS;
     }
     if (strcmp(name, "--representatives") == 0) {
         option.representatives = number(value);
-        return option.representatives > 0u;
+        return option.representatives > 0;
     }
     if (strcmp(name, "--most") == 0) {
         option.most = number(value);
@@ -189,7 +189,7 @@ int main(int argc, char **argv) {
     bool good = true;
     unsigned variants = 0;
     read_options(argc, argv);
-    for (unsigned i = option.shard; good && (i < (unsigned)MODEL_VARIANTS); i += option.shards) {
+    for (unsigned i = option.shard; good && (i < MODEL_VARIANTS); i += option.shards) {
         if ((option.variant < 0) || (option.variant == (int)i)) {
             good = search(&MODEL_VARIANT[i]);
             variants++;

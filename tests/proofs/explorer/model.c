@@ -21,7 +21,7 @@ enum { BOTH_MS = 150, NEITHER_MS = 700, STOP_MS = 5200, SEEN_MS = 300 };
 const model_variant_t MODEL_VARIANT[MODEL_VARIANTS] = {
     {"shared bus", 0, 0, false},
     {"shared bus, table, the clock wraps", 1, 0u - 2500u, true},
-    {"shared bus, park at standstill, AI lost trips, status frame, the clock passes its middle", 2, 0x80000000u - 4000u,
+    {"shared bus, park at standstill, AI lost trips, status frame, the clock passes its middle", 2, 0x80000000u - 4000,
      true},
     {"gateway, the clock wraps", 3, 0u - 4000u, true},
     {"gateway, table, all pass in manual, frozen heartbeat, ceiling", 4, 0, false},
@@ -36,7 +36,7 @@ static sim_hal_sink_fn *judge_sent;
 
 static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
     model.frames++;
-    if (model.stalled && (side == HAL_CAN_VEHICLE) && (testbed.hal.can[side].status.tx_pending_ms == 0u)) {
+    if (model.stalled && (side == HAL_CAN_VEHICLE) && (testbed.hal.can[side].status.tx_pending_ms == 0)) {
         model.taken_ms = testbed.now_ms;
         testbed.hal.can[side].status.tx_pending_ms = 1;
     }
@@ -64,7 +64,7 @@ void model_root(const model_variant_t *variant) {
     model.recover_requests = testbed.hal.can[HAL_CAN_VEHICLE].recover_requests;
     testbed.offset_ms = variant->clock_ms - (uint32_t)testbed.now_ms;
     sim_hal_set_now_ms(&testbed.hal, variant->clock_ms);
-    for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
+    for (unsigned m = 0; m < TRAFFIC_MESSAGES; m++) {
         testbed.traffic[m].counter = 0;
     }
     model_apply_defect();
@@ -79,7 +79,7 @@ void model_save(model_saved_t *saved) {
 void model_restore(const model_saved_t *saved) {
     testbed_restore(&saved->testbed);
     model = saved->model;
-    testbed.receive_path_dead = model.defect == (uint8_t)DEFECT_RECEIVE_DEAD;
+    testbed.receive_path_dead = model.defect == DEFECT_RECEIVE_DEAD;
 }
 
 uint32_t model_now_ms(void) {
@@ -87,7 +87,7 @@ uint32_t model_now_ms(void) {
 }
 
 bool model_wrapped(void) {
-    const uint32_t middle = (model_variant->clock_ms < 0x80000000u) ? 0x80000000u : 0u;
+    const uint32_t middle = (model_variant->clock_ms < 0x80000000u) ? 0x80000000u : 0;
     return model_variant->wraps && (model_now_ms() >= middle - model_variant->clock_ms);
 }
 
@@ -105,17 +105,17 @@ __attribute__((format(printf, 1, 2))) static void broken(const char *format, ...
 /* Whether the defect has lasted long enough for a trip. The limits are from the protocol, not the supervisor's own. */
 static bool must_trip(void) {
     const uint64_t defect_ms = testbed.now_ms - model.defect_ms;
-    const uint64_t engaged_ms = (model.mode == (uint8_t)MODEL_ENGAGED) ? (testbed.now_ms - model.mode_ms) : 0u;
+    const uint64_t engaged_ms = (model.mode == MODEL_ENGAGED) ? (testbed.now_ms - model.mode_ms) : 0;
     const uint64_t both_ms = (defect_ms < engaged_ms) ? defect_ms : engaged_ms;
     switch (DEFECT_ROWS[model.defect].trips) {
     case TRIPS_ALWAYS:
-        return defect_ms > (uint64_t)ALWAYS_MS;
+        return defect_ms > ALWAYS_MS;
     case TRIPS_FLAPPING:
-        return defect_ms > (uint64_t)FLAPPING_MS;
+        return defect_ms > FLAPPING_MS;
     case TRIPS_ENGAGED:
-        return both_ms > (uint64_t)ENGAGED_MS;
+        return both_ms > ENGAGED_MS;
     case TRIPS_FOLLOWED:
-        return both_ms > (uint64_t)FOLLOWED_MS;
+        return both_ms > FOLLOWED_MS;
     default:
         return false;
     }
@@ -139,15 +139,13 @@ static void judge_defect(bool was_latched) {
 static void judge_mode(void) {
     const uint64_t mode_ms = testbed.now_ms - model.mode_ms;
     const uint64_t wheels_ms = testbed.now_ms - model.wheels_ms;
-    if (agv_state_commands_safe(agv_supervisor_state(&testbed.supervisor)) ||
-        (model.defect == (uint8_t)DEFECT_MODE_FLAPS)) {
+    if (agv_state_commands_safe(agv_supervisor_state(&testbed.supervisor)) || (model.defect == DEFECT_MODE_FLAPS)) {
         return;
     }
-    if ((model.mode == (uint8_t)MODEL_BOTH) && (mode_ms > (uint64_t)BOTH_MS)) {
+    if ((model.mode == MODEL_BOTH) && (mode_ms > BOTH_MS)) {
         broken("SUP-9: both modes for %u ms without a trip", (unsigned)mode_ms);
     }
-    if ((model.mode == (uint8_t)MODEL_NEITHER) && model.wheels_turn && (mode_ms > (uint64_t)NEITHER_MS) &&
-        (wheels_ms > (uint64_t)NEITHER_MS)) {
+    if ((model.mode == MODEL_NEITHER) && model.wheels_turn && (mode_ms > NEITHER_MS) && (wheels_ms > NEITHER_MS)) {
         broken("SUP-9: neither mode for %u ms while moving, without a trip", (unsigned)mode_ms);
     }
 }
@@ -156,8 +154,8 @@ static void judge_mode(void) {
 static void judge_stop(void) {
     const uint64_t wheels_ms = testbed.now_ms - model.wheels_ms;
     const uint64_t latched_ms = testbed.now_ms - model.latched_ms;
-    const bool seen = model_flows(M_WHEELS) && (testbed.now_ms - model.defect_ms > (uint64_t)SEEN_MS) &&
-                      (wheels_ms > (uint64_t)SEEN_MS) && (latched_ms > (uint64_t)SEEN_MS);
+    const bool seen = model_flows(M_WHEELS) && (testbed.now_ms - model.defect_ms > SEEN_MS) && (wheels_ms > SEEN_MS) &&
+                      (latched_ms > SEEN_MS);
     if (!agv_state_is_latched(agv_supervisor_state(&testbed.supervisor))) {
         model.latched_ms = testbed.now_ms;
         model.stood = false;
@@ -167,7 +165,7 @@ static void judge_stop(void) {
     if (!agv_supervisor_output_closed(&testbed.supervisor) || !model.wheels_turn) {
         return;
     }
-    if ((latched_ms > (uint64_t)STOP_MS) && (wheels_ms > latched_ms + (uint64_t)SEEN_MS)) {
+    if ((latched_ms > STOP_MS) && (wheels_ms > latched_ms + (uint64_t)SEEN_MS)) {
         broken("FSM-12: the wheels turn %u ms after the trip, and the safety output is closed", (unsigned)latched_ms);
     }
     if (model.stood && seen) {
@@ -208,7 +206,7 @@ static bool is_off(hal_can_side_t side) {
 
 bool model_flows(unsigned message) {
     const traffic_message_t *m = &testbed.traffic[message];
-    return !m->muted && (m->length == 8u) && !is_off(testbed.traffic[message].side);
+    return !m->muted && (m->length == 8) && !is_off(testbed.traffic[message].side);
 }
 
 /* A controller in bus-off receives nothing. */
@@ -219,21 +217,21 @@ static void send(unsigned message) {
 }
 
 static bool is_due(unsigned message, uint32_t t_ms) {
-    if ((message == (unsigned)M_GEAR) && (model.defect == (uint8_t)DEFECT_AI_BABBLES)) {
-        return t_ms % (uint32_t)BABBLE_MS == 0u;
+    if ((message == M_GEAR) && (model.defect == DEFECT_AI_BABBLES)) {
+        return t_ms % BABBLE_MS == 0;
     }
     return t_ms % TRAFFIC[message].cycle_ms == PHASE_MS[message];
 }
 
 static void send_due(void) {
     const uint32_t t_ms = model_now_ms();
-    for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
+    for (unsigned m = 0; m < TRAFFIC_MESSAGES; m++) {
         if (!testbed.traffic[m].muted && is_due(m, t_ms)) {
             send(m);
         }
     }
-    if ((model.defect == (uint8_t)DEFECT_FOREIGN) &&
-        ((testbed.now_ms - model.foreign_ms) % (uint64_t)FOREIGN_MS == 0u) && !is_off(HAL_CAN_VEHICLE)) {
+    if ((model.defect == DEFECT_FOREIGN) && ((testbed.now_ms - model.foreign_ms) % FOREIGN_MS == 0) &&
+        !is_off(HAL_CAN_VEHICLE)) {
         testbed_frame(HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 8, .data = {MODEL_D}}, 0);
     }
 }
@@ -242,13 +240,13 @@ static void send_due(void) {
 
 static void follow_controller(void) {
     sim_hal_can_t *can = &testbed.hal.can[HAL_CAN_VEHICLE];
-    if (model.recover_in_ms != 0u) {
+    if (model.recover_in_ms != 0) {
         model.recover_in_ms--;
-        if ((model.recover_in_ms == 0u) && (model.bus == (uint8_t)BUS_OFF)) {
+        if ((model.recover_in_ms == 0) && (model.bus == BUS_OFF)) {
             model_set_bus(BUS_FINE);
         }
     }
-    if ((model.bus == (uint8_t)BUS_OFF) && (can->recover_requests != model.recover_requests)) {
+    if ((model.bus == BUS_OFF) && (can->recover_requests != model.recover_requests)) {
         model.recover_in_ms = RECOVERY_MS;
     }
     model.recover_requests = can->recover_requests;
@@ -257,7 +255,7 @@ static void follow_controller(void) {
 /* The age of the oldest frame that is not sent, in full milliseconds, at least 1 (hal/can.h). */
 static void age_pending(void) {
     sim_hal_can_t *can = &testbed.hal.can[HAL_CAN_VEHICLE];
-    if (model.stalled && (can->status.tx_pending_ms != 0u) && (testbed.now_ms > model.taken_ms)) {
+    if (model.stalled && (can->status.tx_pending_ms != 0) && (testbed.now_ms > model.taken_ms)) {
         can->status.tx_pending_ms = (uint32_t)(testbed.now_ms - model.taken_ms);
     }
 }
@@ -270,7 +268,7 @@ static void finish_ms(void) {
     send_due();
     follow_controller();
     judge(was_latched);
-    if (model.defect == (uint8_t)DEFECT_MODE_FLAPS) {
+    if (model.defect == DEFECT_MODE_FLAPS) {
         model_apply_defect(); /* the next 363h may have another mode */
     }
 }
@@ -306,7 +304,7 @@ static bool may_send_late_frame(unsigned message) {
 
 bool model_can_speak(void) {
     bool can = false;
-    for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
+    for (unsigned m = 0; m < TRAFFIC_MESSAGES; m++) {
         can = can || may_send_late_frame(m);
     }
     return can;
@@ -314,11 +312,11 @@ bool model_can_speak(void) {
 
 void model_speak(void) {
     testbed.now_ms++;
-    for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
+    for (unsigned m = 0; m < TRAFFIC_MESSAGES; m++) {
         const traffic_message_t kept = testbed.traffic[m];
         if (may_send_late_frame(m)) {
             testbed.traffic[m].frozen = false;
-            testbed.traffic[m].counter = (uint8_t)(kept.counter + 100u);
+            testbed.traffic[m].counter = (uint8_t)(kept.counter + 100);
             send(m);
             testbed.traffic[m].frozen = kept.frozen;
             testbed.traffic[m].muted = kept.muted;
@@ -329,7 +327,7 @@ void model_speak(void) {
 
 /* A start reads the whole recorder, which has no effect on decisions. It is emptied to save time. */
 static void empty_recorder(void) {
-    for (unsigned i = 0; i < (unsigned)AGV_RECORDER_EVENTS; i++) {
+    for (unsigned i = 0; i < AGV_RECORDER_EVENTS; i++) {
         testbed.recorder.events[i].kind = 0;
     }
 }

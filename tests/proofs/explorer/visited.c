@@ -28,20 +28,20 @@ uint32_t visited_states(void) {
 }
 
 visited_t *visited_at(uint32_t index) {
-    return &block[index / (uint32_t)BLOCK][index % (uint32_t)BLOCK];
+    return &block[index / BLOCK][index % BLOCK];
 }
 
 static uint32_t hash_of(const abstract_t *key) {
     uint64_t hash = UINT64_C(0xCBF29CE484222325);
-    for (unsigned i = 0; i < (unsigned)ABSTRACT_BYTES; i++) {
+    for (unsigned i = 0; i < ABSTRACT_BYTES; i++) {
         hash = (hash ^ key->byte[i]) * UINT64_C(0x100000001B3);
     }
-    return (uint32_t)(hash ^ (hash >> 32u)) % (uint32_t)BUCKETS;
+    return (uint32_t)(hash ^ (hash >> 32)) % BUCKETS;
 }
 
 static visited_t *append(void) {
-    visited_t **room = &block[count / (uint32_t)BLOCK];
-    if ((count / (uint32_t)BLOCK) >= (uint32_t)BLOCKS) {
+    visited_t **room = &block[count / BLOCK];
+    if ((count / BLOCK) >= BLOCKS) {
         return NULL;
     }
     if (*room == NULL) {
@@ -51,7 +51,7 @@ static visited_t *append(void) {
         return NULL;
     }
     count++;
-    return visited_at(count - 1u);
+    return visited_at(count - 1);
 }
 
 static bool add(const abstract_t *key, uint32_t hash, uint32_t parent, unsigned symbol) {
@@ -89,7 +89,7 @@ bool visited_reached(uint32_t parent, unsigned symbol, unsigned representatives)
     if ((known >= representatives) || same_way) {
         return true;
     }
-    states += (known == 0u) ? 1u : 0u;
+    states += (known == 0) ? 1 : 0;
     return add(&key, hash, parent, symbol);
 }
 
@@ -98,11 +98,11 @@ unsigned visited_path(uint32_t index, uint8_t path[PATH_MAX_SYMBOLS]) {
     for (uint32_t i = index; visited_at(i)->parent != VISITED_NONE; i = visited_at(i)->parent) {
         length++;
     }
-    if (length > (unsigned)PATH_MAX_SYMBOLS) {
+    if (length > PATH_MAX_SYMBOLS) {
         abort();
     }
     unsigned at = length;
-    for (uint32_t i = index; at > 0u; i = visited_at(i)->parent) {
+    for (uint32_t i = index; at > 0; i = visited_at(i)->parent) {
         at--;
         path[at] = visited_at(i)->symbol;
     }

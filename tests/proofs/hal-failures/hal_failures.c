@@ -75,10 +75,10 @@ static bool is_failing; /* false: in the round without failures, in which no rul
 static void on_broken(void) {
     bool is_borne = false;
     for (unsigned i = 0; is_failing && (i < sizeof BORNE / sizeof BORNE[0]); i++) {
-        is_borne = is_borne || ((((failing_ops >> BORNE[i].op) & 1u) != 0u) &&
-                                (BORNE[i].one_is_enough || (failing_count > 1u)) && harm_rule_is(BORNE[i].text));
+        is_borne = is_borne || ((((failing_ops >> BORNE[i].op) & 1) != 0) &&
+                                (BORNE[i].one_is_enough || (failing_count > 1)) && harm_rule_is(BORNE[i].text));
     }
-    sum.borne += is_borne ? 1u : 0u;
+    sum.borne += is_borne ? 1 : 0;
     harm_take_rule(is_borne);
 }
 
@@ -102,7 +102,7 @@ static void run_step(act_t what) {
 
 /* The counter of sent frames must be the number of frames that were sent. */
 static void judge_counters(act_t what) {
-    const uint32_t before = (what == RUN) ? agv_supervisor_counters(&saved.supervisor)->sent : 0u;
+    const uint32_t before = (what == RUN) ? agv_supervisor_counters(&saved.supervisor)->sent : 0;
     const uint32_t counted = agv_supervisor_counters(&testbed.supervisor)->sent - before;
     if (counted != (uint32_t)(testbed.rules.sent - saved.rules.sent)) {
         harm_note("the counter of sent frames is wrong");
@@ -111,7 +111,7 @@ static void judge_counters(act_t what) {
 
 /* SUP-7: frames wait and are not accepted. */
 static void judge_stalled(uint32_t count, uint32_t ops) {
-    const bool dead = (count == UINT32_MAX) && (((ops >> SIM_HAL_OP_CAN_SEND) & 1u) != 0u);
+    const bool dead = (count == UINT32_MAX) && (((ops >> SIM_HAL_OP_CAN_SEND) & 1) != 0);
     if (!dead || !testbed_is_latched() || testbed.rules.shadow || testbed_has(AGV_FAULT_BUS_OFF)) {
         return;
     }
@@ -151,7 +151,7 @@ static void fail(const char *where, act_t what, uint32_t call, uint32_t count, u
 static void on_alarm(int number) {
     static const char TEXT[] = "HARM: a call does not return: it hangs\n";
     (void)number;
-    _exit(write(STDOUT_FILENO, TEXT, sizeof TEXT - 1u) > 0 ? 1 : 3);
+    _exit(write(STDOUT_FILENO, TEXT, sizeof TEXT - 1) > 0 ? 1 : 3);
 }
 
 static part_t part;
@@ -175,7 +175,7 @@ static void fail_one(const char *where, act_t what, uint32_t call) {
     sum.calls++;
     sum.of_op[op]++;
     fail(where, what, call, 1, 1u << op, common ? FOLLOW_COMMON_MS : FOLLOW_MS, false);
-    if (!common || (sum.of_op[op] % (unsigned)COMMON_EVERY == 0u)) {
+    if (!common || (sum.of_op[op] % COMMON_EVERY == 0)) {
         fail(where, what, call, RUN_OF_CALLS, SIM_HAL_OP_ALL, FOLLOW_MS, false);
         fail(where, what, call, RUN_OF_CALLS, SIM_HAL_OP_ALL, FOLLOW_MS, true);
         fail(where, what, call, UINT32_MAX, 1u << op, FOLLOW_LONG_MS, false);
@@ -192,7 +192,7 @@ static void step(const char *where, act_t what) {
     harm_report("%s, without any failure", where);
     for (uint32_t i = 1; i <= count; i++) {
         const unsigned number = call_number++;
-        if ((number % part.shards == part.shard) && ((number / part.shards) % part.every == 0u)) {
+        if ((number % part.shards == part.shard) && ((number / part.shards) % part.every == 0)) {
             fail_one(where, what, calls + i);
         }
     }
@@ -251,10 +251,10 @@ int main(int argc, char **argv) {
     part = part_read("hal_failures", argc, argv);
     testbed_on_broken = on_broken;
     (void)signal(SIGALRM, on_alarm);
-    for (unsigned variant = 0; variant < (unsigned)TESTBED_VARIANTS; variant++) {
+    for (unsigned variant = 0; variant < TESTBED_VARIANTS; variant++) {
         round_of(variant);
     }
-    for (unsigned op = 0; op < (unsigned)SIM_HAL_OP_COUNT; op++) {
+    for (unsigned op = 0; op < SIM_HAL_OP_COUNT; op++) {
         (void)printf("%-18s %8llu calls\n", NAMES[op], (unsigned long long)sum.of_op[op]);
     }
     (void)printf(
@@ -264,5 +264,5 @@ int main(int argc, char **argv) {
     (void)printf("%d rounds: %llu calls made to fail in %llu runs, %llu failures, harm: %llu\n", (int)TESTBED_VARIANTS,
                  (unsigned long long)sum.calls, (unsigned long long)sum.runs, (unsigned long long)sum.failures,
                  (unsigned long long)harm_count);
-    return ((harm_count == 0u) && (sum.calls > 0u)) ? 0 : 1;
+    return ((harm_count == 0) && (sum.calls > 0)) ? 0 : 1;
 }

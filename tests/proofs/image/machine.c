@@ -57,7 +57,7 @@ const start_t *machine_image(const char *path) {
     for (uint32_t i = 0; i < head.e_phnum; i++) {
         Elf32_Phdr part;
         (void)memcpy(&part, &file[head.e_phoff + (i * sizeof part)], sizeof part);
-        if ((part.p_type != PT_LOAD) || (part.p_filesz == 0u)) {
+        if ((part.p_type != PT_LOAD) || (part.p_filesz == 0)) {
             continue;
         }
         if ((part.p_paddr > sizeof flash) || (part.p_filesz > sizeof flash - part.p_paddr) || (part.p_offset > size) ||
@@ -79,11 +79,11 @@ uint64_t machine_image_hash(void) {
 }
 
 static uint32_t half_at(uint32_t pc) {
-    return (pc < sizeof flash - 1u) ? (uint32_t)flash[pc] | ((uint32_t)flash[pc + 1u] << 8u) : 0u;
+    return (pc < sizeof flash - 1) ? (uint32_t)flash[pc] | ((uint32_t)flash[pc + 1] << 8) : 0;
 }
 
 uint32_t machine_length(uint32_t pc) {
-    return (half_at(pc) >= 0xE800u) ? 4u : 2u;
+    return (half_at(pc) >= 0xE800u) ? 4 : 2;
 }
 
 /* ---- The board ---- */
@@ -105,17 +105,17 @@ static uint64_t on_read(uc_engine *uc, uint64_t offset, unsigned size, void *con
     case BOARD_CAUSE:
         return board->cause;
     case BOARD_RX_WAITING:
-        return (frame != NULL) ? 1u : 0u;
+        return (frame != NULL) ? 1 : 0;
     case BOARD_RX_SIDE:
-        return (frame != NULL) ? frame->side : 0u;
+        return (frame != NULL) ? frame->side : 0;
     case BOARD_RX_ID:
-        return (frame != NULL) ? frame->id : 0u;
+        return (frame != NULL) ? frame->id : 0;
     case BOARD_RX_LOW:
-        return (frame != NULL) ? word_of(&frame->data[0]) : 0u;
+        return (frame != NULL) ? word_of(&frame->data[0]) : 0;
     case BOARD_RX_HIGH:
-        return (frame != NULL) ? word_of(&frame->data[4]) : 0u;
+        return (frame != NULL) ? word_of(&frame->data[4]) : 0;
     default:
-        return 0u;
+        return 0;
     }
 }
 
@@ -147,7 +147,7 @@ static void on_write(uc_engine *uc, uint64_t offset, unsigned size, uint64_t val
         world_sent(&board->bus, board->now_ms, &board->sending);
         break;
     case BOARD_OUTPUT:
-        world_output(&board->bus, board->now_ms, (word & 1u) != 0u);
+        world_output(&board->bus, board->now_ms, (word & 1) != 0);
         break;
     case BOARD_FEED:
         board->fed_ms = board->now_ms;
@@ -169,7 +169,7 @@ static void on_block(uc_engine *uc, uint64_t address, uint32_t size, void *conte
     (void)address;
     (void)size;
     machine->blocks++;
-    if (machine->blocks > (uint32_t)BLOCKS_MAX) {
+    if (machine->blocks > BLOCKS_MAX) {
         (void)uc_emu_stop(uc);
     }
 }
@@ -193,7 +193,7 @@ machine_t *machine_open(bool steps) {
     machine->ram = ram;
     (void)memset(ram, 0, BOARD_RAM_SIZE);
     must(uc_open(UC_ARCH_ARM, UC_MODE_THUMB | UC_MODE_MCLASS, &machine->uc), "open");
-    must(uc_ctl_set_cpu_model(machine->uc, (start.architecture == 6u) ? UC_CPU_ARM_CORTEX_M0 : UC_CPU_ARM_CORTEX_M4),
+    must(uc_ctl_set_cpu_model(machine->uc, (start.architecture == 6) ? UC_CPU_ARM_CORTEX_M0 : UC_CPU_ARM_CORTEX_M4),
          "processor");
     must(uc_mem_map_ptr(machine->uc, BOARD_FLASH, sizeof flash, UC_PROT_READ | UC_PROT_EXEC, flash), "flash");
     must(uc_mem_map_ptr(machine->uc, BOARD_RAM, BOARD_RAM_SIZE, UC_PROT_READ | UC_PROT_WRITE, ram), "RAM");
@@ -215,17 +215,17 @@ board_t *machine_board(machine_t *machine) {
 static void write_cpu(machine_t *machine, const cpu_t *cpu) {
     void *values[MACHINE_REGISTERS + 1];
     cpu_t copy = *cpu;
-    for (uint32_t i = 0; i < (uint32_t)MACHINE_REGISTERS; i++) {
+    for (uint32_t i = 0; i < MACHINE_REGISTERS; i++) {
         values[i] = &copy.r[i];
     }
     values[MACHINE_REGISTERS] = &copy.psr;
-    copy.r[MACHINE_PC] |= 1u;
+    copy.r[MACHINE_PC] |= 1;
     must(uc_reg_write_batch(machine->uc, names, values, MACHINE_REGISTERS + 1), "registers");
 }
 
 static void read_cpu(const machine_t *machine, cpu_t *cpu) {
     void *values[MACHINE_REGISTERS + 1];
-    for (uint32_t i = 0; i < (uint32_t)MACHINE_REGISTERS; i++) {
+    for (uint32_t i = 0; i < MACHINE_REGISTERS; i++) {
         values[i] = &cpu->r[i];
     }
     values[MACHINE_REGISTERS] = &cpu->psr;
@@ -246,7 +246,7 @@ void machine_save(const machine_t *machine, snapshot_t *to) {
 }
 
 void machine_reset(machine_t *machine) {
-    cpu_t cpu = {.psr = 1u << 24u};
+    cpu_t cpu = {.psr = 1u << 24};
     cpu.r[MACHINE_SP] = start.stack;
     cpu.r[MACHINE_PC] = start.reset;
     must(uc_context_restore(machine->uc, machine->fresh), "context");
@@ -255,7 +255,7 @@ void machine_reset(machine_t *machine) {
 }
 
 static uint32_t pc_of(const machine_t *machine) {
-    uint32_t pc = 0u;
+    uint32_t pc = 0;
     must(uc_reg_read(machine->uc, UC_ARM_REG_PC, &pc), "pc");
     return pc;
 }
@@ -266,7 +266,7 @@ static machine_end_t end_of(const machine_t *machine, uc_err error) {
         return MACHINE_CRASHED;
     }
     if (machine->trap == TRAP_SVC) {
-        return (half_at(pc_of(machine) - 2u) == (uint32_t)OP_SVC) ? MACHINE_SLEEPS : MACHINE_CRASHED;
+        return (half_at(pc_of(machine) - 2) == OP_SVC) ? MACHINE_SLEEPS : MACHINE_CRASHED;
     }
     return (machine->trap == NO_TRAP) ? MACHINE_GOES_ON : MACHINE_CRASHED;
 }
@@ -274,7 +274,7 @@ static machine_end_t end_of(const machine_t *machine, uc_err error) {
 static machine_end_t emulate(machine_t *machine, size_t instructions) {
     machine->trap = NO_TRAP;
     machine->blocks = 0;
-    return end_of(machine, uc_emu_start(machine->uc, pc_of(machine) | 1u, UINT32_MAX, 0, instructions));
+    return end_of(machine, uc_emu_start(machine->uc, pc_of(machine) | 1, UINT32_MAX, 0, instructions));
 }
 
 machine_end_t machine_run(machine_t *machine) {
@@ -285,19 +285,19 @@ machine_end_t machine_run(machine_t *machine) {
 /* ---- One instruction. Unicorn takes an IT block as one; here it is taken apart. ---- */
 
 static uint32_t it_of(uint32_t psr) {
-    return ((psr >> 25u) & 3u) | ((psr >> 8u) & 0xFCu);
+    return ((psr >> 25) & 3) | ((psr >> 8) & 0xFCu);
 }
 
 static uint32_t with_it(uint32_t psr, uint32_t it) {
-    return (psr & ~0x0600FC00u) | ((it & 3u) << 25u) | ((it & 0xFCu) << 8u);
+    return (psr & ~0x0600FC00u) | ((it & 3) << 25) | ((it & 0xFCu) << 8);
 }
 
 static uint32_t next_it(uint32_t it) {
-    return ((it & 7u) == 0u) ? 0u : ((it & 0xE0u) | ((it << 1u) & 0x1Fu));
+    return ((it & 7) == 0) ? 0 : ((it & 0xE0u) | ((it << 1) & 0x1Fu));
 }
 
 static bool is_it(uint32_t half) {
-    return (start.architecture > 6u) && ((half & 0xFF00u) == 0xBF00u) && ((half & 0xFu) != 0u);
+    return (start.architecture > 6) && ((half & 0xFF00u) == 0xBF00u) && ((half & 0xFu) != 0);
 }
 
 void machine_skip(cpu_t *cpu) {
@@ -306,12 +306,12 @@ void machine_skip(cpu_t *cpu) {
 }
 
 static bool holds(uint32_t condition, uint32_t psr) {
-    const bool n = ((psr >> 31u) & 1u) != 0u;
-    const bool z = ((psr >> 30u) & 1u) != 0u;
-    const bool c = ((psr >> 29u) & 1u) != 0u;
-    const bool v = ((psr >> 28u) & 1u) != 0u;
+    const bool n = ((psr >> 31) & 1) != 0;
+    const bool z = ((psr >> 30) & 1) != 0;
+    const bool c = ((psr >> 29) & 1) != 0;
+    const bool v = ((psr >> 28) & 1) != 0;
     const bool table[] = {z, c, n, v, c && !z, n == v, (n == v) && !z, true};
-    return table[condition >> 1u] != ((condition & 1u) != 0u);
+    return table[condition >> 1] != ((condition & 1) != 0);
 }
 
 /* In an IT block only comparisons among the 16-bit instructions set the flags. */
@@ -328,20 +328,20 @@ machine_end_t machine_step(machine_t *machine) {
     const uint32_t pc = cpu.r[MACHINE_PC];
     const uint32_t it = it_of(cpu.psr);
     if (is_it(half_at(pc))) {
-        cpu.r[MACHINE_PC] += 2u;
+        cpu.r[MACHINE_PC] += 2;
         cpu.psr = with_it(cpu.psr, half_at(pc) & 0xFFu);
         write_cpu(machine, &cpu);
         return MACHINE_GOES_ON;
     }
-    if (it == 0u) {
+    if (it == 0) {
         return emulate(machine, 1);
     }
-    if (!holds(it >> 4u, cpu.psr)) {
+    if (!holds(it >> 4, cpu.psr)) {
         machine_skip(&cpu);
         write_cpu(machine, &cpu);
         return MACHINE_GOES_ON;
     }
-    cpu.psr = with_it(cpu.psr, 0u);
+    cpu.psr = with_it(cpu.psr, 0);
     write_cpu(machine, &cpu);
     const machine_end_t end = emulate(machine, 1);
     read_cpu(machine, &cpu);
@@ -359,31 +359,31 @@ void machine_clear_dead_stack(machine_t *machine) {
     cpu_t cpu;
     read_cpu(machine, &cpu);
     const uint32_t sp = cpu.r[MACHINE_SP];
-    if ((sp > (uint32_t)BOARD_RAM) && (sp <= start.stack)) {
+    if ((sp > BOARD_RAM) && (sp <= start.stack)) {
         (void)memset(machine->ram, 0, sp - (uint32_t)BOARD_RAM);
     }
 }
 
 static uint64_t mixed(uint64_t hash, uint64_t word) {
     const uint64_t product = (hash ^ word) * 0x9E3779B97F4A7C15u;
-    return product ^ (product >> 29u);
+    return product ^ (product >> 29);
 }
 
 uint64_t machine_hash(const machine_t *machine) {
     cpu_t cpu;
     uint64_t lane[4] = {1, 2, 3, 4};
     read_cpu(machine, &cpu);
-    for (uint32_t at = 0; at < (uint32_t)BOARD_RAM_SIZE; at += (uint32_t)sizeof lane) {
+    for (uint32_t at = 0; at < BOARD_RAM_SIZE; at += (uint32_t)sizeof lane) {
         uint64_t words[4];
         if (((uint32_t)BOARD_RAM + at >= start.log) && ((uint32_t)BOARD_RAM + at + sizeof lane <= start.log_end)) {
             continue;
         }
         (void)memcpy(words, &machine->ram[at], sizeof words);
-        for (uint32_t i = 0; i < 4u; i++) {
+        for (uint32_t i = 0; i < 4; i++) {
             lane[i] = mixed(lane[i], words[i]);
         }
     }
-    for (uint32_t i = 0; i < (uint32_t)MACHINE_REGISTERS; i++) {
+    for (uint32_t i = 0; i < MACHINE_REGISTERS; i++) {
         lane[0] = mixed(lane[0], cpu.r[i]);
     }
     return mixed(mixed(mixed(mixed(cpu.psr, lane[0]), lane[1]), lane[2]), lane[3]);

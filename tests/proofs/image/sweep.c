@@ -60,8 +60,8 @@ static known_t *known;
 static uint32_t known_count;
 
 static known_t *find(uint64_t key) {
-    known_t *at = &known[key % (uint64_t)KNOWN];
-    while ((at->key != 0u) && (at->key != key)) {
+    known_t *at = &known[key % KNOWN];
+    while ((at->key != 0) && (at->key != key)) {
         at = (at == &known[KNOWN - 1]) ? known : at + 1;
     }
     return at;
@@ -69,7 +69,7 @@ static known_t *find(uint64_t key) {
 
 static void learn(uint64_t key, known_t what) {
     known_t *const at = find(key);
-    if ((at->key == 0u) && (known_count < (uint32_t)KNOWN / 2u)) {
+    if ((at->key == 0) && (known_count < KNOWN / 2)) {
         *at = what;
         at->key = key;
         known_count++;
@@ -77,12 +77,12 @@ static void learn(uint64_t key, known_t what) {
 }
 
 static bool is_looked_up(uint32_t offset) {
-    return (offset <= 12u) || ((offset % 32u) == 0u);
+    return (offset <= 12) || ((offset % 32) == 0);
 }
 
 static uint64_t mixed(uint64_t key, uint64_t word) {
     const uint64_t product = (key ^ word) * 0xD6E8FEB86659FD93u;
-    return product ^ (product >> 32u);
+    return product ^ (product >> 32);
 }
 
 /* All that decides what comes: processor, RAM, board, and what the judge remembers. */
@@ -91,13 +91,13 @@ static uint64_t key_of(uint32_t offset) {
     const bus_t *const bus = &board->bus;
     uint64_t key = mixed(machine_hash(runner), offset);
     key = mixed(key, board->fed_ms);
-    key = mixed(key, board->cause | (bus->output_closed ? 0x100u : 0u) | (bus->latched ? 0x200u : 0u));
-    key = mixed(key,
-                bus->reason | ((board->now_ms - bus->opened_ms < 4u) ? 0x100u + board->now_ms - bus->opened_ms : 0u));
-    for (uint32_t i = 0; i < (uint32_t)WORLD_KINDS; i++) {
+    key = mixed(key, board->cause | (bus->output_closed ? 0x100u : 0) | (bus->latched ? 0x200u : 0));
+    key =
+        mixed(key, bus->reason | ((board->now_ms - bus->opened_ms < 4) ? 0x100u + board->now_ms - bus->opened_ms : 0));
+    for (uint32_t i = 0; i < WORLD_KINDS; i++) {
         key = mixed(key, bus->safe_ms[i]);
     }
-    return (key == 0u) ? 1u : key;
+    return (key == 0) ? 1 : key;
 }
 
 /* ---- Time ---- */
@@ -113,9 +113,9 @@ static void restart(uint32_t cause) {
     world_reset(&board->bus, board->now_ms);
     board->cause = cause;
     board->fed_ms = board->now_ms;
-    board->received = UINT32_MAX / 2u; /* what comes meanwhile is lost */
+    board->received = UINT32_MAX / 2; /* what comes meanwhile is lost */
     machine_reset(runner);
-    restart_ms = (machine_run(runner) == MACHINE_SLEEPS) ? 0u : (board->now_ms + 1u);
+    restart_ms = (machine_run(runner) == MACHINE_SLEEPS) ? 0 : (board->now_ms + 1);
 }
 
 /* A crash opens the output and resets at once (FSM-4); a program that hangs, or feeds no more, is bitten. */
@@ -127,7 +127,7 @@ static void end_millisecond(machine_end_t end) {
     } else if (end == MACHINE_HANGS) {
         was_down = true;
         restart_ms = board->fed_ms + (uint32_t)WATCHDOG_MS;
-    } else if ((restart_ms == 0u) && (board->now_ms - board->fed_ms >= (uint32_t)WATCHDOG_MS)) {
+    } else if ((restart_ms == 0) && (board->now_ms - board->fed_ms >= WATCHDOG_MS)) {
         was_down = true;
         restart(HAL_RESET_WATCHDOG);
     }
@@ -144,7 +144,7 @@ static void begin_millisecond(machine_t *machine) {
 
 static void one_millisecond(void) {
     begin_millisecond(runner);
-    if (restart_ms == 0u) {
+    if (restart_ms == 0) {
         end_millisecond(machine_run(runner));
         return;
     }
@@ -163,7 +163,7 @@ static bool found_itself(void) {
     machine_save(runner, &at);
     const uint8_t unresettable =
         at.ram[start->latch - (uint32_t)BOARD_RAM + sizeof(uint32_t) + (size_t)LATCH_UNRESETTABLE];
-    bool found = (at.board.bus.reason != UINT8_MAX) && (unresettable < (uint8_t)AGV_FAULT_COUNT);
+    bool found = (at.board.bus.reason != UINT8_MAX) && (unresettable < AGV_FAULT_COUNT);
     for (uint32_t i = 0; i < sizeof checks; i++) {
         found = found || (at.board.bus.reason == checks[i]);
     }
@@ -195,13 +195,13 @@ static known_t follow(uint32_t offset, machine_end_t end) {
         const board_t *const board = machine_board(runner);
         note_millisecond(&path, offset);
         result.harm = (uint8_t)board->bus.harm;
-        if ((result.harm != 0u) || (offset + 1u >= window->follow_ms)) {
+        if ((result.harm != 0) || (offset + 1 >= window->follow_ms)) {
             break;
         }
-        if ((restart_ms == 0u) && is_looked_up(offset)) {
+        if ((restart_ms == 0) && is_looked_up(offset)) {
             const uint64_t key = key_of(offset);
             const known_t *const before = find(key);
-            if (before->key != 0u) {
+            if (before->key != 0) {
                 result = *before;
                 for (uint32_t i = 0; i < path.count; i++) {
                     path.differs[i] = path.differs[i] || result.differs;
@@ -224,7 +224,7 @@ static known_t follow(uint32_t offset, machine_end_t end) {
 }
 
 static verdict_t verdict_of(known_t result) {
-    if (result.harm != 0u) {
+    if (result.harm != 0) {
         return HARMFUL;
     }
     if (result.detected) {
@@ -256,13 +256,13 @@ static void note_harm(uint32_t what, uint32_t bit, uint32_t harm) {
     const size_t used = strlen(harms);
     char text[20] = "skip";
     uint32_t i = 0;
-    while (((harm >> i) & 1u) == 0u) {
+    while (((harm >> i) & 1) == 0) {
         i++;
     }
-    if (what != (uint32_t)SKIP) {
+    if (what != SKIP) {
         (void)snprintf(text, sizeof text, "%s.%u", name_of(what), (unsigned)bit);
     }
-    (void)snprintf(&harms[used], sizeof harms - used, "%s%s=%s", (used > 0u) ? " " : "", text, harm_names[i]);
+    (void)snprintf(&harms[used], sizeof harms - used, "%s%s=%s", (used > 0) ? " " : "", text, harm_names[i]);
     sum.harms[i]++;
 }
 
@@ -274,7 +274,7 @@ typedef struct {
 } line_t;
 
 static void count_line(const line_t *line) {
-    for (uint32_t i = 0; i < (uint32_t)VERDICTS; i++) {
+    for (uint32_t i = 0; i < VERDICTS; i++) {
         sum.verdicts[i] += line->verdicts[i];
         sum.done += line->verdicts[i];
     }
@@ -283,7 +283,7 @@ static void count_line(const line_t *line) {
 static void add_line(const line_t *line) {
     const uint64_t *const v = line->verdicts;
     count_line(line);
-    if ((table != NULL) && (v[SAME] + v[SAFE] + v[DETECTED] + v[HARMFUL] > 0u)) {
+    if ((table != NULL) && (v[SAME] + v[SAFE] + v[DETECTED] + v[HARMFUL] > 0)) {
         (void)fprintf(table, "%s\t%llu\t%x\t%llu\t%llu\t%llu\t%llu\t%llu\t%s\n", window->name,
                       (unsigned long long)line->index, (unsigned)line->pc, (unsigned long long)line->faults,
                       (unsigned long long)v[SAME], (unsigned long long)v[SAFE], (unsigned long long)v[DETECTED],
@@ -306,15 +306,15 @@ static void read_lines(FILE *in) {
     while ((fgets(text, sizeof text, in) != NULL) && (strchr(text, '\n') != NULL)) {
         uint64_t numbers[3 + VERDICTS]; /* index, address, disturbances, verdicts */
         char *at = strchr(text, '\t');
-        for (unsigned i = 0; i < 3u + (unsigned)VERDICTS; i++) {
-            numbers[i] = (at != NULL) ? strtoull(at, &at, (i == 1u) ? 16 : 10) : 0u;
+        for (unsigned i = 0; i < 3 + (unsigned)VERDICTS; i++) {
+            numbers[i] = (at != NULL) ? strtoull(at, &at, (i == 1) ? 16 : 10) : 0;
         }
         if ((at == NULL) || (*at != '\t')) {
             refuse_table("has a line that is none of its own");
         }
-        for (unsigned i = 0; i < (unsigned)WORLD_WINDOWS; i++) {
+        for (unsigned i = 0; i < WORLD_WINDOWS; i++) {
             if ((strncmp(text, WORLD[i].name, strlen(WORLD[i].name)) == 0) && (text[strlen(WORLD[i].name)] == '\t')) {
-                resumed[i] = numbers[0] + 1u;
+                resumed[i] = numbers[0] + 1;
             }
         }
         count_line(&(line_t){.verdicts = {numbers[3], numbers[4], numbers[5], numbers[6]}});
@@ -348,9 +348,9 @@ static void open_table(void) {
 /* ---- One instruction ---- */
 
 static bool is_chosen(uint64_t index, uint32_t what, uint32_t bit) {
-    const uint64_t number = (((uint64_t)(window - WORLD) << 56u) ^ (index << 16u) ^ (what << 8u) ^ bit) + 1u;
-    const unsigned every = (what == (uint32_t)SKIP) ? ((options.every + 29u) / 30u) : options.every;
-    return (mixed(mixed(number, 1), 2) % every) == 0u;
+    const uint64_t number = (((uint64_t)(window - WORLD) << 56) ^ (index << 16) ^ (what << 8) ^ bit) + 1;
+    const unsigned every = (what == SKIP) ? ((options.every + 29) / 30) : options.every;
+    return (mixed(mixed(number, 1), 2) % every) == 0;
 }
 
 static void disturb(const snapshot_t *state, uint32_t offset, uint32_t what, uint32_t bit,
@@ -376,23 +376,23 @@ static bool changes_flow(const snapshot_t *before, const snapshot_t *after) {
 static uint32_t written_by(const snapshot_t *before, const snapshot_t *after) {
     static snapshot_t inverted;
     static snapshot_t then;
-    uint32_t written = changes_flow(before, after) ? (1u << (uint32_t)MACHINE_PC) : 0u;
-    for (uint32_t r = 0; r <= (uint32_t)FLAGS; r++) {
-        const uint32_t mask = (r == (uint32_t)FLAGS) ? 0xF0000000u : UINT32_MAX;
-        if (r == (uint32_t)MACHINE_PC) {
+    uint32_t written = changes_flow(before, after) ? (1u << MACHINE_PC) : 0;
+    for (uint32_t r = 0; r <= FLAGS; r++) {
+        const uint32_t mask = (r == FLAGS) ? 0xF0000000u : UINT32_MAX;
+        if (r == MACHINE_PC) {
             continue;
         }
         inverted = *before;
-        uint32_t *const there = (r == (uint32_t)FLAGS) ? &inverted.cpu.psr : &inverted.cpu.r[r];
+        uint32_t *const there = (r == FLAGS) ? &inverted.cpu.psr : &inverted.cpu.r[r];
         const uint32_t value = *there ^ mask;
         const uint32_t was = *there;
         *there = value;
         machine_load(stepper, &inverted);
         const machine_end_t end = machine_step(stepper);
         machine_save(stepper, &then);
-        const uint32_t now = (r == (uint32_t)FLAGS) ? then.cpu.psr : then.cpu.r[r];
-        const uint32_t usually = (r == (uint32_t)FLAGS) ? after->cpu.psr : after->cpu.r[r];
-        if ((((usually ^ was) & mask) != 0u) || ((end == MACHINE_GOES_ON) && (((now ^ value) & mask) != 0u))) {
+        const uint32_t now = (r == FLAGS) ? then.cpu.psr : then.cpu.r[r];
+        const uint32_t usually = (r == FLAGS) ? after->cpu.psr : after->cpu.r[r];
+        if ((((usually ^ was) & mask) != 0) || ((end == MACHINE_GOES_ON) && (((now ^ value) & mask) != 0))) {
             written |= 1u << r;
         }
     }
@@ -410,15 +410,15 @@ static void disturb_instruction(const snapshot_t *before, const snapshot_t *afte
         machine_skip(&changed.cpu);
         disturb(&changed, offset, SKIP, 0, verdicts);
     }
-    for (uint32_t r = 0; r <= (uint32_t)FLAGS; r++) {
-        if (((written >> r) & 1u) == 0u) {
+    for (uint32_t r = 0; r <= FLAGS; r++) {
+        if (((written >> r) & 1) == 0) {
             continue;
         }
-        const uint32_t low = (r == (uint32_t)FLAGS) ? 28u : ((r == (uint32_t)MACHINE_PC) ? 1u : 0u);
-        for (uint32_t bit = low; bit < 32u; bit++, count++) {
+        const uint32_t low = (r == FLAGS) ? 28 : ((r == MACHINE_PC) ? 1 : 0);
+        for (uint32_t bit = low; bit < 32; bit++, count++) {
             if (is_chosen(index, r, bit)) {
                 changed = *after;
-                *((r == (uint32_t)FLAGS) ? &changed.cpu.psr : &changed.cpu.r[r]) ^= 1u << bit;
+                *((r == FLAGS) ? &changed.cpu.psr : &changed.cpu.r[r]) ^= 1u << bit;
                 disturb(&changed, offset, r, bit, verdicts);
             }
         }
@@ -448,16 +448,16 @@ static void approach(snapshot_t *before) {
         fail("the image does not start");
     }
     machine_clear_dead_stack(runner);
-    while (machine_board(runner)->now_ms < 8000u) {
+    while (machine_board(runner)->now_ms < 8000) {
         machine_save(runner, before);
-        const uint32_t next_ms = before->board.now_ms + 1u;
+        const uint32_t next_ms = before->board.now_ms + 1;
         begin_ms = next_ms;
         if (next_ms == window->first_ms) {
             return;
         }
         one_millisecond();
         const bool sent = machine_board(runner)->bus.safe_ms[1] == next_ms;
-        if ((window->first_ms == 0u) && (next_ms > 1100u) && sent) {
+        if ((window->first_ms == 0) && (next_ms > 1100) && sent) {
             return;
         }
     }
@@ -466,7 +466,7 @@ static void approach(snapshot_t *before) {
 
 static machine_end_t begin_window(machine_t *machine, uint32_t offset) {
     begin_millisecond(machine);
-    if (window->restarts && (offset == 0u)) {
+    if (window->restarts && (offset == 0)) {
         board_t *const board = machine_board(machine);
         world_reset(&board->bus, board->now_ms);
         board->cause = HAL_RESET_WATCHDOG;
@@ -488,7 +488,7 @@ static void run_usual(const snapshot_t *before) {
         usual_key[offset] = key_of(offset);
         learn(usual_key[offset], (known_t){0});
     }
-    if ((machine_board(runner)->bus.harm != 0u) || was_down) {
+    if ((machine_board(runner)->bus.harm != 0) || was_down) {
         fail("the undisturbed run does harm, or ends");
     }
 }
@@ -550,12 +550,12 @@ static void read_option(const char *name, char *value, char **end) {
         options.table = value;
     } else if (strcmp(name, "--pc") == 0) {
         options.from = (unsigned)strtoul(value, end, 16);
-        options.to = (**end == '-') ? (unsigned)strtoul(*end + 1, end, 16) : 0u;
+        options.to = (**end == '-') ? (unsigned)strtoul(*end + 1, end, 16) : 0;
     } else if (strcmp(name, "--every") == 0) {
         options.every = (unsigned)strtoul(value, end, 10);
     } else if (strcmp(name, "--shard") == 0) {
         options.shard = (unsigned)strtoul(value, end, 10);
-        options.shards = (**end == '/') ? (unsigned)strtoul(*end + 1, end, 10) : 0u;
+        options.shards = (**end == '/') ? (unsigned)strtoul(*end + 1, end, 10) : 0;
     } else {
         usage();
     }
@@ -574,7 +574,7 @@ static void read_options(int argc, char **argv) {
             usage();
         }
     }
-    if ((options.shard >= options.shards) || (options.every == 0u) || (options.from >= options.to)) {
+    if ((options.shard >= options.shards) || (options.every == 0) || (options.from >= options.to)) {
         usage();
     }
 }
@@ -603,7 +603,7 @@ int main(int argc, char **argv) {
         return 2;
     }
     open_table();
-    for (unsigned i = 0; i < (unsigned)WORLD_WINDOWS; i++) {
+    for (unsigned i = 0; i < WORLD_WINDOWS; i++) {
         if ((options.window == NULL) || (strcmp(options.window, WORLD[i].name) == 0)) {
             found = true;
             sweep_window(i);
@@ -613,10 +613,10 @@ int main(int argc, char **argv) {
     if (!found) {
         usage();
     }
-    if (sum.verdicts[HARMFUL] == 0u) {
+    if (sum.verdicts[HARMFUL] == 0) {
         return 0;
     }
-    for (uint32_t i = 0; i < (uint32_t)HARMS; i++) {
+    for (uint32_t i = 0; i < HARMS; i++) {
         (void)printf("harm: %llu %s\n", (unsigned long long)sum.harms[i], harm_names[i]);
     }
     return 1;

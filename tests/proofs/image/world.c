@@ -77,50 +77,50 @@ static void set_alarm(traffic_message_t *traffic, bool on) {
 }
 
 static void follow_common(traffic_message_t *traffic, uint32_t ms) {
-    if (ms == (uint32_t)ENGAGED_MS) {
+    if (ms == ENGAGED_MS) {
         engage(traffic);
-    } else if (ms == (uint32_t)DRIVES_MS) {
+    } else if (ms == DRIVES_MS) {
         drive(traffic, true);
-    } else if ((ms == (uint32_t)ALARM_MS) && (window != W_DEADLINE)) {
+    } else if ((ms == ALARM_MS) && (window != W_DEADLINE)) {
         set_alarm(traffic, true);
-    } else if (ms == (uint32_t)ALARM_ENDS_MS) {
+    } else if (ms == ALARM_ENDS_MS) {
         set_alarm(traffic, false);
-    } else if ((window == W_DEADLINE) && ((ms == (uint32_t)SILENT_MS) || (ms == (uint32_t)SILENT_ENDS_MS))) {
-        traffic[M_STEERING].muted = ms == (uint32_t)SILENT_MS;
+    } else if ((window == W_DEADLINE) && ((ms == SILENT_MS) || (ms == SILENT_ENDS_MS))) {
+        traffic[M_STEERING].muted = ms == SILENT_MS;
     }
 }
 
 /* The vehicle obeys, and the operator presses the button for 1.5 s. */
 static void follow_reset(traffic_message_t *traffic, uint32_t ms) {
-    if (ms == (uint32_t)OBEYS_MS) {
+    if (ms == OBEYS_MS) {
         obey(traffic);
     } else if (window == W_RESTART) {
         return;
-    } else if (ms == (uint32_t)PRESS_MS) {
+    } else if (ms == PRESS_MS) {
         traffic_button(traffic, true);
-    } else if (ms == (uint32_t)RELEASE_MS) {
+    } else if (ms == RELEASE_MS) {
         traffic_button(traffic, false);
     } else if (window == W_REFUSAL) {
-        if (ms == (uint32_t)ROLLS_MS) {
+        if (ms == ROLLS_MS) {
             drive(traffic, true);
         }
-    } else if (ms == (uint32_t)ENGAGED_AGAIN_MS) {
+    } else if (ms == ENGAGED_AGAIN_MS) {
         engage(traffic);
         drive(traffic, true);
-    } else if (ms == (uint32_t)ALARM_AGAIN_MS) {
+    } else if (ms == ALARM_AGAIN_MS) {
         set_alarm(traffic, true);
     }
 }
 
 static void put(uint32_t ms, unsigned message, const hal_can_frame_t *frame, hal_can_side_t side) {
     const uint32_t n = counts[ms];
-    if (n >= (uint32_t)FRAMES_MAX) {
+    if (n >= FRAMES_MAX) {
         abort();
     }
     frames[ms][n] = (frame_t){.side = side, .id = frame->id, .length = frame->length};
     (void)memcpy(frames[ms][n].data, frame->data, sizeof frame->data);
-    if (message < (unsigned)TRAFFIC_COMMANDS) {
-        last_command[ms][message] = 1u + (ms * (uint32_t)FRAMES_MAX) + n;
+    if (message < TRAFFIC_COMMANDS) {
+        last_command[ms][message] = 1 + (ms * (uint32_t)FRAMES_MAX) + n;
     }
     counts[ms]++;
 }
@@ -129,20 +129,20 @@ void world_choose(unsigned chosen, uint32_t topology) {
     static traffic_message_t traffic[TRAFFIC_MESSAGES];
     const agv_config_t config = {.topology = (uint16_t)topology, .id_set = AGV_ID_SET_HEADING};
     window = chosen;
-    gateway = topology == (uint32_t)AGV_TOPOLOGY_GATEWAY;
+    gateway = topology == AGV_TOPOLOGY_GATEWAY;
     begin_ms = UINT32_MAX;
     (void)memset(counts, 0, sizeof counts);
     (void)memset(last_command, 0, sizeof last_command);
     (void)memset(traffic, 0, sizeof traffic);
     traffic_heal(traffic);
     traffic_address(traffic, &config);
-    for (uint32_t ms = 1; ms < (uint32_t)ALL_MS; ms++) {
-        (void)memcpy(last_command[ms], last_command[ms - 1u], sizeof last_command[ms]);
+    for (uint32_t ms = 1; ms < ALL_MS; ms++) {
+        (void)memcpy(last_command[ms], last_command[ms - 1], sizeof last_command[ms]);
         follow_common(traffic, ms);
         if (!is_driving()) {
             follow_reset(traffic, ms);
         }
-        for (unsigned i = 0; i < (unsigned)TRAFFIC_MESSAGES; i++) {
+        for (unsigned i = 0; i < TRAFFIC_MESSAGES; i++) {
             if (traffic_is_due(&traffic[i], ms)) {
                 const hal_can_frame_t frame = traffic_next(&traffic[i]);
                 put(ms, i, &frame, traffic[i].side);
@@ -156,7 +156,7 @@ void world_begin(uint32_t first_ms) {
 }
 
 const frame_t *world_frame(uint32_t now_ms, uint32_t n) {
-    return ((now_ms < (uint32_t)ALL_MS) && (n < counts[now_ms])) ? &frames[now_ms][n] : NULL;
+    return ((now_ms < ALL_MS) && (n < counts[now_ms])) ? &frames[now_ms][n] : NULL;
 }
 
 /* ---- The judge ---- */
@@ -176,10 +176,10 @@ static const uint8_t safe_signals[7] = {0, 0, 0, 0, 0x70, 0, 0};
 /* Since when safe commands are due; UINT32_MAX: they are not. */
 static uint32_t due_since(uint32_t now_ms) {
     if (window == W_HOLD || window == W_RELEASE) {
-        if (now_ms >= (uint32_t)ALARM_AGAIN_MS) {
+        if (now_ms >= ALARM_AGAIN_MS) {
             return ALARM_AGAIN_MS;
         }
-        return ((window == W_HOLD) && (now_ms < (uint32_t)RELEASE_MS)) ? begin_ms : UINT32_MAX;
+        return ((window == W_HOLD) && (now_ms < RELEASE_MS)) ? begin_ms : UINT32_MAX;
     }
     return begin_ms;
 }
@@ -189,12 +189,12 @@ static bool is_due(uint32_t now_ms) {
 }
 
 static uint32_t word_of(const uint8_t *data) {
-    return (uint32_t)data[0] | ((uint32_t)data[1] << 8u);
+    return (uint32_t)data[0] | ((uint32_t)data[1] << 8);
 }
 
 /* In these windows the latch is closed from the beginning. */
 static bool is_latched(uint32_t now_ms) {
-    return !is_driving() && is_due(now_ms) && (now_ms < (uint32_t)ALARM_AGAIN_MS);
+    return !is_driving() && is_due(now_ms) && (now_ms < ALARM_AGAIN_MS);
 }
 
 /* Whether a frame tells the vehicle anything but to stand where it is. */
@@ -202,11 +202,11 @@ static bool moves(const frame_t *frame) {
     const uint32_t raw = word_of(frame->data);
     switch (frame->id) {
     case 0x43F:
-        return (frame->data[4] & 0x40u) == 0u;
+        return (frame->data[4] & 0x40u) == 0;
     case 0x168:
-        return frame->data[0] != (uint8_t)GEAR_P;
+        return frame->data[0] != GEAR_P;
     case 0x075:
-        return frame->data[0] != 0u;
+        return frame->data[0] != 0;
     case 0x065:
         return (raw < (uint32_t)(ANGLE - ANGLE_FAR)) || (raw > (uint32_t)(ANGLE + ANGLE_FAR));
     default:
@@ -215,10 +215,10 @@ static bool moves(const frame_t *frame) {
 }
 
 static bool is_sent_by_ai(const frame_t *frame, uint32_t now_ms) {
-    for (unsigned i = 0; i < (unsigned)TRAFFIC_COMMANDS; i++) {
+    for (unsigned i = 0; i < TRAFFIC_COMMANDS; i++) {
         const uint32_t at = last_command[now_ms][i];
-        if (at != 0u) {
-            const frame_t *const sent = &frames[(at - 1u) / FRAMES_MAX][(at - 1u) % FRAMES_MAX];
+        if (at != 0) {
+            const frame_t *const sent = &frames[(at - 1) / FRAMES_MAX][(at - 1) % FRAMES_MAX];
             if ((sent->id == frame->id) && (memcmp(sent->data, frame->data, sizeof sent->data) == 0)) {
                 return true;
             }
@@ -229,8 +229,8 @@ static bool is_sent_by_ai(const frame_t *frame, uint32_t now_ms) {
 
 /* A gateway may pass on what the AI computer sends, in manual only its lights, until it trips, which it may do late. */
 static bool may_pass(const bus_t *bus, const frame_t *frame, uint32_t now_ms) {
-    const bool manual = (frame->id != 0x43Fu) && (window >= W_HOLD) && (now_ms >= (uint32_t)OBEYS_MS) &&
-                        (now_ms < (uint32_t)ENGAGED_AGAIN_MS);
+    const bool manual =
+        (frame->id != 0x43Fu) && (window >= W_HOLD) && (now_ms >= OBEYS_MS) && (now_ms < ENGAGED_AGAIN_MS);
     const bool driving = !is_due(now_ms) || (!bus->latched && (now_ms < due_since(now_ms) + (uint32_t)TRIP_LATE_MS));
     return gateway && !manual && driving && is_sent_by_ai(frame, now_ms);
 }
@@ -238,10 +238,10 @@ static bool may_pass(const bus_t *bus, const frame_t *frame, uint32_t now_ms) {
 static void note_safe(bus_t *bus, uint32_t now_ms, const frame_t *frame) {
     if ((frame->id == 0x43Fu) && (memcmp(frame->data, safe_signals, sizeof safe_signals) == 0)) {
         bus->safe_ms[0] = now_ms;
-    } else if ((frame->id == 0x168u) && (frame->data[0] == (uint8_t)GEAR_P)) {
+    } else if ((frame->id == 0x168u) && (frame->data[0] == GEAR_P)) {
         bus->safe_ms[1] = now_ms;
         bus->latched = bus->latched || is_due(now_ms);
-    } else if ((frame->id == 0x075u) && (frame->data[0] == 0u)) {
+    } else if ((frame->id == 0x075u) && (frame->data[0] == 0)) {
         bus->safe_ms[2] = now_ms;
     } else if (frame->id == 0x7F0u) {
         bus->reason = frame->data[1];
@@ -259,7 +259,7 @@ static void mix(bus_t *bus, const void *bytes, size_t size) {
 
 void world_sent(bus_t *bus, uint32_t now_ms, const frame_t *frame) {
     mix(bus, frame, sizeof *frame);
-    if ((frame->side != (uint32_t)HAL_CAN_VEHICLE) || (frame->length != 8u)) {
+    if ((frame->side != HAL_CAN_VEHICLE) || (frame->length != 8)) {
         return;
     }
     if (moves(frame) && !may_pass(bus, frame, now_ms)) {
@@ -279,7 +279,7 @@ void world_output(bus_t *bus, uint32_t now_ms, bool closed) {
         return;
     }
     /* After a trip it stays closed until the vehicle has had its time to obey: then it may have opened for a moment. */
-    const bool glitch = is_driving() && (now_ms - bus->opened_ms <= (uint32_t)GLITCH_MS);
+    const bool glitch = is_driving() && (now_ms - bus->opened_ms <= GLITCH_MS);
     if (is_due(now_ms) && !glitch) {
         bus->harm |= HARM_UNDONE;
     }
@@ -287,7 +287,7 @@ void world_output(bus_t *bus, uint32_t now_ms, bool closed) {
 
 void world_reset(bus_t *bus, uint32_t now_ms) {
     world_output(bus, now_ms, false);
-    for (uint32_t i = 0; i < (uint32_t)WORLD_KINDS; i++) {
+    for (uint32_t i = 0; i < WORLD_KINDS; i++) {
         bus->safe_ms[i] = now_ms;
     }
 }
@@ -298,13 +298,13 @@ void world_passed(bus_t *bus, uint32_t now_ms) {
         return;
     }
     const uint32_t since_ms = due_since(now_ms);
-    for (uint32_t i = 0; i < (uint32_t)WORLD_KINDS; i++) {
+    for (uint32_t i = 0; i < WORLD_KINDS; i++) {
         const uint32_t from_ms = (bus->safe_ms[i] > since_ms) ? bus->safe_ms[i] : since_ms;
-        if (now_ms - from_ms > (uint32_t)SILENCE_MS) {
+        if (now_ms - from_ms > SILENCE_MS) {
             bus->harm |= HARM_SILENCE;
         }
     }
-    if (is_driving() && bus->output_closed && (now_ms - since_ms > (uint32_t)OPEN_BY_MS)) {
+    if (is_driving() && bus->output_closed && (now_ms - since_ms > OPEN_BY_MS)) {
         bus->harm |= HARM_CLOSED;
     }
 }

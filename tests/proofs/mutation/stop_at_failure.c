@@ -8,7 +8,7 @@ void agv_stop_at_failure(void);
 
 void agv_stop_at_failure(void) {
     (void)fflush(stdout); /* what was printed is not lost in a crash */
-    if ((Unity.TestFailures != 0u) && (getenv("AGV_MUTATION_GO_ON") == NULL)) {
+    if ((Unity.TestFailures != 0) && (getenv("AGV_MUTATION_GO_ON") == NULL)) {
         exit(1);
     }
 }

@@ -43,7 +43,7 @@ void harm_report(const char *format, ...) {
         return;
     }
     harm_count++;
-    if (harm_count <= (uint64_t)PRINTED_MAX) {
+    if (harm_count <= PRINTED_MAX) {
         (void)printf("HARM: ");
         va_start(arguments, format);
         (void)vprintf(format, arguments);

@@ -58,7 +58,7 @@ static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame
 static rules_bus_t state_of_bus(void) {
     const sim_hal_can_t *can = &testbed.hal.can[HAL_CAN_VEHICLE];
     const bool off = can->status.state == HAL_CAN_BUS_OFF;
-    return (rules_bus_t){.takes_frames = !off && !can->full && (testbed.unsettled == 0u),
+    return (rules_bus_t){.takes_frames = !off && !can->full && (testbed.unsettled == 0),
                          .is_bus_off = off,
                          .is_passive = can->status.state == HAL_CAN_ERROR_PASSIVE,
                          .tx_pending_ms = can->status.tx_pending_ms};
@@ -98,7 +98,7 @@ void testbed_jump(uint32_t ms) {
     testbed.ticked_ms = testbed.now_ms;
     const sim_hal_can_t *can = &testbed.hal.can[HAL_CAN_VEHICLE];
     const bool troubled = (can->status.state == HAL_CAN_BUS_OFF) || can->full;
-    testbed.unsettled = troubled ? (uint32_t)SETTLE_TICKS : (testbed.unsettled - ((testbed.unsettled != 0u) ? 1u : 0u));
+    testbed.unsettled = troubled ? (uint32_t)SETTLE_TICKS : (testbed.unsettled - ((testbed.unsettled != 0) ? 1 : 0));
     judge();
 }
 
@@ -131,7 +131,7 @@ void testbed_send(unsigned message) {
 void testbed_run(uint32_t ms) {
     for (uint32_t i = 0; i < ms; i++) {
         testbed.now_ms++;
-        for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
+        for (unsigned m = 0; m < TRAFFIC_MESSAGES; m++) {
             if (traffic_is_due(&testbed.traffic[m], testbed.now_ms)) {
                 testbed_send(m);
             }
@@ -143,10 +143,10 @@ void testbed_run(uint32_t ms) {
 void testbed_disturb(hal_can_side_t side, unsigned kind, uint8_t amount) {
     switch (kind) {
     case 0:
-        sim_hal_set_can_state(&testbed.hal, side, (hal_can_state_t)(amount % 3u));
+        sim_hal_set_can_state(&testbed.hal, side, (hal_can_state_t)(amount % 3));
         break;
     case 1:
-        sim_hal_set_full(&testbed.hal, side, (amount & 1u) != 0u);
+        sim_hal_set_full(&testbed.hal, side, (amount & 1) != 0);
         break;
     case 2:
         sim_hal_set_tx_pending_ms(&testbed.hal, side, amount);
@@ -163,8 +163,8 @@ void testbed_disturb(hal_can_side_t side, unsigned kind, uint8_t amount) {
 static void configure(unsigned variant) {
     agv_config_t *config = &testbed.config;
     agv_config_defaults(config);
-    config->topology = (variant >= 3u && variant <= 5u) ? AGV_TOPOLOGY_GATEWAY : AGV_TOPOLOGY_SHARED;
-    config->id_set = (variant == 1u || variant == 4u) ? AGV_ID_SET_TABLE : AGV_ID_SET_HEADING;
+    config->topology = (variant >= 3 && variant <= 5) ? AGV_TOPOLOGY_GATEWAY : AGV_TOPOLOGY_SHARED;
+    config->id_set = (variant == 1 || variant == 4) ? AGV_ID_SET_TABLE : AGV_ID_SET_HEADING;
     switch (variant) {
     case 1:
         config->vcu_counter = AGV_COUNTER_INCREMENTS;
@@ -204,7 +204,7 @@ static void begin(unsigned variant, uint32_t offset_ms) {
     traffic_address(testbed.traffic, &testbed.config);
     traffic_heal(testbed.traffic);
     sim_store_init(&testbed.store);
-    const bool gateway = testbed.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    const bool gateway = testbed.config.topology == AGV_TOPOLOGY_GATEWAY;
     const sim_hal_config_t hal = {
         .clock_start_ms = offset_ms, .watchdog_ms = SIM_HAL_WATCHDOG_OFF, .store = &testbed.store};
     sim_hal_init_direct(&testbed.hal, &hal, gateway ? 2 : 1, on_sent, NULL);
@@ -222,20 +222,20 @@ static void expect_state(unsigned state) {
 
 /* Run from the start to a state. The vehicle moves in ACTIVE, and obeys on the way to SAFE. */
 static void run_to_state(unsigned state) {
-    testbed_run(state == 0u ? 50 : 700);
-    if (state >= 2u) {
+    testbed_run(state == 0 ? 50 : 700);
+    if (state >= 2) {
         traffic_mode(testbed.traffic, MODE_ENGAGED);
         traffic_gear(testbed.traffic, GEAR_D);
         traffic_wheels(testbed.traffic, 200, 200);
         testbed_run(800);
     }
-    if (state >= 3u) {
+    if (state >= 3) {
         testbed.traffic[M_VEHICLE].data[4] = 0x80; /* the S-driver alarm */
         testbed_run(10);
         testbed.traffic[M_VEHICLE].data[4] = 0;
         testbed_run(40);
     }
-    if (state >= 4u) {
+    if (state >= 4) {
         traffic_mode(testbed.traffic, MODE_MANUAL);
         traffic_gear(testbed.traffic, GEAR_P);
         traffic_wheels(testbed.traffic, 0, 0);
@@ -252,11 +252,11 @@ static uint32_t offset_for(unsigned variant, uint64_t took_ms) {
     case 1:
     case 3:
     case 5:
-        return 0u - before;
+        return 0 - before;
     case 2:
         return 0x80000000u - before;
     default:
-        return 0u;
+        return 0;
     }
 }
 

@@ -56,10 +56,10 @@ void test_every_flipped_bit_breaks_the_seal_and_the_checksums(void) {
                           0x0F0F0F0Fu, 0x00000000u, 0x00000000u, 0xFFFFFFFFu, 0x76543210u};
     const uint32_t seal = agv_seal(words, sizeof words);
     const uint32_t crc32 = crc32_of(words, sizeof words);
-    for (uint32_t bit = 0; bit < 10u * 32u; bit++) {
-        words[bit / 32u] ^= 1u << (bit % 32u);
+    for (uint32_t bit = 0; bit < 10 * 32; bit++) {
+        words[bit / 32] ^= 1u << (bit % 32);
         TEST_ASSERT_TRUE(agv_seal(words, sizeof words) != seal);
         TEST_ASSERT_TRUE(crc32_of(words, sizeof words) != crc32);
-        words[bit / 32u] ^= 1u << (bit % 32u);
+        words[bit / 32] ^= 1u << (bit % 32);
     }
 }

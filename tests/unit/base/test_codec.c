@@ -12,7 +12,7 @@
 
 #define GUARD 0xA5u
 
-static uint8_t memory[AGV_DLC + 2u] __attribute__((aligned(8)));
+static uint8_t memory[AGV_DLC + 2] __attribute__((aligned(8)));
 static uint8_t *const data = &memory[1];
 
 void setUp(void) {
@@ -21,7 +21,7 @@ void setUp(void) {
 
 void tearDown(void) {
     TEST_ASSERT_EQUAL_HEX8_MESSAGE(GUARD, memory[0], "wrote in front of the payload");
-    TEST_ASSERT_EQUAL_HEX8_MESSAGE(GUARD, memory[AGV_DLC + 1u], "wrote behind the payload");
+    TEST_ASSERT_EQUAL_HEX8_MESSAGE(GUARD, memory[AGV_DLC + 1], "wrote behind the payload");
 }
 
 static void assert_payload(const uint8_t *expected, UNITY_LINE_TYPE line) {
@@ -177,7 +177,7 @@ void test_each_gear_has_its_code(void) {
 /* Shows: P2 */
 void test_of_all_byte_values_four_are_gears(void) {
     for (unsigned code = 0; code <= 0xFFu; code++) {
-        const bool valid = (code == 1u) || (code == 2u) || (code == 4u) || (code == 8u);
+        const bool valid = (code == 1) || (code == 2) || (code == 4) || (code == 8);
         const uint8_t gear = (uint8_t)code;
         if (valid) {
             PACKS(gear_command, BYTES(gear), .gear = gear);
@@ -342,7 +342,7 @@ void test_each_mode_of_the_eps_has_its_code(void) {
 /* Shows: P18 */
 void test_of_all_byte_values_five_are_modes_of_the_eps(void) {
     for (unsigned code = 0; code <= 0xFFu; code++) {
-        const bool valid = (code <= 3u) || (code == 0xFFu);
+        const bool valid = (code <= 3) || (code == 0xFFu);
         const uint8_t mode = (uint8_t)code;
         if (valid) {
             PACKS(eps_status, BYTES(0, 0, 0, mode, 0, 0, 0, 0x11), .mode = mode, .faults = 0x11);

@@ -496,9 +496,9 @@ void test_an_ai_side_that_is_bus_off_trips_on_a_gateway_only(void) {
 
 /* Shows: INT-2 */
 void test_bits_beyond_the_faults_are_refused(void) {
-    for (unsigned bit = AGV_FAULT_COUNT; bit < 32u * AGV_FAULT_WORDS; bit++) {
+    for (unsigned bit = AGV_FAULT_COUNT; bit < 32 * AGV_FAULT_WORDS; bit++) {
         setUp();
-        config.trips.words[bit / 32u] |= 1u << (bit % 32u);
+        config.trips.words[bit / 32] |= 1u << (bit % 32);
         expect_problem(AGV_CONFIG_NO_SUCH_FAULT, AGV_SETTING_COUNT);
     }
 }
@@ -516,7 +516,7 @@ void test_there_is_no_setting_beyond_the_last(void) {
 /* CRC-32 as zlib's, a bit at a time. */
 static uint32_t crc_bytes(uint32_t crc, uint32_t value, unsigned bytes) {
     for (unsigned bit = 0; bit < 8 * bytes; bit++) {
-        const uint32_t low = (crc ^ (value >> bit)) & 1u;
+        const uint32_t low = (crc ^ (value >> bit)) & 1;
         crc = (crc >> 1) ^ (low * 0xEDB88320u);
     }
     return crc;
@@ -548,10 +548,10 @@ void test_every_flipped_bit_changes_the_checksum(void) {
             (void)agv_config_set(&config, i, value);
         }
     }
-    for (unsigned bit = 0; bit < 32u * AGV_FAULT_WORDS; bit++) {
-        config.trips.words[bit / 32u] ^= 1u << (bit % 32u);
+    for (unsigned bit = 0; bit < 32 * AGV_FAULT_WORDS; bit++) {
+        config.trips.words[bit / 32] ^= 1u << (bit % 32);
         TEST_ASSERT_TRUE(agv_config_checksum(&config) != checksum);
-        config.trips.words[bit / 32u] ^= 1u << (bit % 32u);
+        config.trips.words[bit / 32] ^= 1u << (bit % 32);
     }
     TEST_ASSERT_EQUAL_HEX32(checksum, agv_config_checksum(&config));
 }

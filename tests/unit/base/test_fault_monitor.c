@@ -125,13 +125,13 @@ void test_nine_faults_are_transients_and_the_others_are_not(void) {
 void test_a_tick_ends_no_condition(void) {
     set(AGV_FAULT_BUS_OFF, true);
     for (uint32_t day = 0; day < 60; day++) {
-        tick(day * 86400000u);
+        tick(day * 86400000);
     }
     TEST_ASSERT_TRUE(is_active(AGV_FAULT_BUS_OFF));
 }
 
 void test_an_invalid_fault_changes_nothing(void) {
-    static const unsigned none[] = {AGV_FAULT_NONE, AGV_FAULT_COUNT, 32u * AGV_FAULT_WORDS - 1u, 32u * AGV_FAULT_WORDS,
+    static const unsigned none[] = {AGV_FAULT_NONE, AGV_FAULT_COUNT, 32 * AGV_FAULT_WORDS - 1, 32 * AGV_FAULT_WORDS,
                                     255};
     for (unsigned i = 0; i < 5; i++) {
         set(none[i], true);

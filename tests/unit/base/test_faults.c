@@ -15,7 +15,7 @@ void setUp(void) {
 
 /* Whether a bit of the set is on, by hand. */
 static bool bit(unsigned n) {
-    return ((set.words[n / 32u] >> (n % 32u)) & 1u) != 0;
+    return ((set.words[n / 32] >> (n % 32)) & 1) != 0;
 }
 
 void test_a_fault_is_the_bit_of_its_rank(void) {
@@ -62,7 +62,7 @@ void test_the_first_of_a_set_is_the_highest_ranking_one(void) {
 /* Bits beyond the last fault. */
 void test_an_invalid_fault_is_in_no_set(void) {
     memset(&set, 0xFF, sizeof set);
-    TEST_ASSERT_TRUE(agv_fault_is_in(&set, AGV_FAULT_COUNT - 1u));
+    TEST_ASSERT_TRUE(agv_fault_is_in(&set, AGV_FAULT_COUNT - 1));
     TEST_ASSERT_FALSE(agv_fault_is_in(&set, AGV_FAULT_NONE));
     for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
         agv_fault_set_put(&set, i, false);
@@ -71,7 +71,7 @@ void test_an_invalid_fault_is_in_no_set(void) {
 }
 
 void test_an_invalid_fault_changes_nothing(void) {
-    static const unsigned none[] = {AGV_FAULT_NONE, 32u * AGV_FAULT_WORDS - 1u, 32u * AGV_FAULT_WORDS, 255, UINT32_MAX};
+    static const unsigned none[] = {AGV_FAULT_NONE, 32 * AGV_FAULT_WORDS - 1, 32 * AGV_FAULT_WORDS, 255, UINT32_MAX};
     for (unsigned i = 0; i < sizeof none / sizeof none[0]; i++) {
         agv_fault_set_put(&set, none[i], true);
         TEST_ASSERT_FALSE(agv_fault_is_in(&set, none[i]));

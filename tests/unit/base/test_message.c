@@ -56,8 +56,8 @@ void test_of_all_identifiers_eleven_are_messages_in_each_set(void) {
     unsigned table = 0;
 
     for (uint32_t id = 0; id <= AGV_ID_MAX; id++) {
-        heading += (agv_message_from_id(id, AGV_ID_SET_HEADING) != AGV_MSG_NONE) ? 1u : 0u;
-        table += (agv_message_from_id(id, AGV_ID_SET_TABLE) != AGV_MSG_NONE) ? 1u : 0u;
+        heading += (agv_message_from_id(id, AGV_ID_SET_HEADING) != AGV_MSG_NONE) ? 1 : 0;
+        table += (agv_message_from_id(id, AGV_ID_SET_TABLE) != AGV_MSG_NONE) ? 1 : 0;
     }
     TEST_ASSERT_EQUAL_UINT(11, heading);
     TEST_ASSERT_EQUAL_UINT(11, table);
@@ -81,7 +81,7 @@ void test_every_message_has_its_cycle_time(void) {
 /* Shows: P17 */
 void test_commands_come_first(void) {
     TEST_ASSERT_EQUAL_UINT(AGV_COMMAND_COUNT, AGV_MSG_VEHICLE_STATUS);
-    TEST_ASSERT_EQUAL_UINT(AGV_COMMAND_COUNT - 1u, AGV_MSG_STEERING_COMMAND);
+    TEST_ASSERT_EQUAL_UINT(AGV_COMMAND_COUNT - 1, AGV_MSG_STEERING_COMMAND);
 }
 
 /* An unknown message has no identifier that a frame could carry, and no cycle. */

@@ -27,7 +27,7 @@ void test_states(void) {
     TEST_ASSERT_EQUAL_STRING("TRIPPED", agv_state_name(AGV_STATE_TRIPPED));
     TEST_ASSERT_EQUAL_STRING("SAFE", agv_state_name(AGV_STATE_SAFE));
     for (unsigned value = 0; value < 256; value++) {
-        named += (agv_state_name((agv_state_t)value) != NULL) ? 1u : 0u;
+        named += (agv_state_name((agv_state_t)value) != NULL) ? 1 : 0;
     }
     TEST_ASSERT_EQUAL_UINT(5, named);
 }

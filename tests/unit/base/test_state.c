@@ -10,7 +10,7 @@ static const uint8_t STATES[] = {AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_STATE_AC
 static unsigned distance(unsigned a, unsigned b) {
     unsigned bits = 0;
     for (unsigned difference = a ^ b; difference != 0; difference >>= 1) {
-        bits += difference & 1u;
+        bits += difference & 1;
     }
     return bits;
 }

@@ -103,7 +103,7 @@ void test_the_longest_limit_and_steps_of_any_length(uint32_t start_ms) {
     begin(DEADLINE, start_ms);
     TEST_ASSERT_FALSE(reached(DEADLINE, start_ms + 60000));
     TEST_ASSERT_TRUE(reached(DEADLINE, start_ms + 60001));
-    for (uint32_t step_ms = 60001; step_ms < 0x80000000u - 60001u; step_ms += 65531) {
+    for (uint32_t step_ms = 60001; step_ms < 0x80000000u - 60001; step_ms += 65531) {
         begin(DEADLINE, start_ms);
         TEST_ASSERT_TRUE(reached(DEADLINE, start_ms + step_ms));
     }
@@ -221,7 +221,7 @@ void test_a_reached_timer_stays_reached_over_a_full_wrap_of_the_clock(void) {
     begin(DURATION, 7);
     /* 2^32 ms are 49.7 days: in steps of one day, and once more around */
     for (uint32_t day = 0; day < 100; day++) {
-        TEST_ASSERT_TRUE(reached(DURATION, 107u + day * 86400000u));
+        TEST_ASSERT_TRUE(reached(DURATION, 107 + day * 86400000));
     }
 }
 
@@ -274,8 +274,8 @@ static account_t accounts[ACCOUNTS]; /* of DURATION and of DEADLINE */
 
 static uint32_t draw(uint32_t below) {
     static uint32_t seed = 1;
-    seed = seed * 1664525u + 1013904223u;
-    return (seed >> 8u) % below;
+    seed = seed * 1664525 + 1013904223;
+    return (seed >> 8) % below;
 }
 
 static void change_one(uint32_t now_ms) {
@@ -331,7 +331,7 @@ void test_the_elapsed_time_of_a_timer(void) {
     expect_spent(0, 0xFFFFFFFFu);
     expect_spent(99, 98);
     expect_spent(100, 99);
-    expect_spent(100, 99 + 0x80000000u - 1u);
+    expect_spent(100, 99 + 0x80000000u - 1);
     expect_spent(100, 99 + 0xF0000000u);
 }
 

@@ -18,7 +18,7 @@ static void step(uint32_t elapsed_ms) {
         in_vain++;
         missing = found;
     }
-    resets += (result == AGV_PRESS_RESETS) ? 1u : 0u;
+    resets += (result == AGV_PRESS_RESETS) ? 1 : 0;
 }
 
 /* In each millisecond the frames come before the tick. */

@@ -135,7 +135,7 @@ void test_of_all_states_and_latches_five_pairs_are_sound(void) {
     for (unsigned pair = 0; pair < 65536; pair++) {
         machine.state = (uint8_t)(pair & 0xFF);
         machine.latched = (uint8_t)(pair >> 8);
-        sound += agv_state_machine_is_sound(&machine) ? 1u : 0u;
+        sound += agv_state_machine_is_sound(&machine) ? 1 : 0;
     }
     TEST_ASSERT_EQUAL_UINT(5, sound);
 }

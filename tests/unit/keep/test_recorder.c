@@ -495,11 +495,11 @@ void test_a_start_with_another_reason_or_after_a_reset_is_a_trip(void) {
 /* Shows: INT-3 */
 void test_a_start_after_a_torn_event_is_a_trip(void) {
     trip(1);
-    recorder.events[0].time_ms ^= 1u;
+    recorder.events[0].time_ms ^= 1;
     start_tripped(AGV_FAULT_BUS_OFF, 2);
     expect_trips(2, 2);
     agv_recorder_start(&recorder);
-    recorder.events[1].time_ms ^= 1u; /* later than the start has looked */
+    recorder.events[1].time_ms ^= 1; /* later than the start has looked */
     add_tripped(AGV_FAULT_BUS_OFF, 3);
     expect_trips(3, 3);
 }

@@ -11,7 +11,7 @@ void setUp(void) {
 
 static void expect_known(unsigned set) {
     for (unsigned i = 0; i < 4; i++) {
-        TEST_ASSERT_EQUAL((set >> i) & 1u, agv_commands_has(&commands, i));
+        TEST_ASSERT_EQUAL((set >> i) & 1, agv_commands_has(&commands, i));
     }
 }
 

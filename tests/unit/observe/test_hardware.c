@@ -148,7 +148,7 @@ void test_the_time_is_a_setting(unsigned setting_ms) {
     config.output_feedback_ms = (uint16_t)setting_ms;
     inputs.output_feedback = CLOSED;
     begin();
-    ticks(setting_ms - 1u);
+    ticks(setting_ms - 1);
     TEST_ASSERT_FALSE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
     ticks(1);
     TEST_ASSERT_TRUE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));

@@ -104,7 +104,7 @@ void test_a_lost_heartbeat_stays_lost_over_a_full_wrap_of_the_clock(void) {
     beat(AGV_NODE_VCU, 1, 1);
     beat(AGV_NODE_VCU, 2, 2);
     for (uint32_t day = 0; day < 60; day++) {
-        const uint32_t now_ms = 100u + day * 86400000u;
+        const uint32_t now_ms = 100 + day * 86400000;
         tick(now_ms);
         TEST_ASSERT_TRUE(judge(AGV_MSG_VEHICLE_STATUS, now_ms));
         TEST_ASSERT_TRUE(judge(AGV_MSG_EPS_STATUS, now_ms));

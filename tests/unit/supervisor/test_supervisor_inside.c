@@ -55,7 +55,7 @@ void test_a_frame_of_its_own_that_the_gate_refuses_trips(void) {
     agv_transmitter_pass(&core->transmitter, &orders, AGV_MSG_GEAR_COMMAND,
                          drive); /* shared bus: this may not be sent */
     agv_core_take_tx_report(core);
-    TEST_ASSERT_TRUE((agv_core_decide(core, &f.ports, 0).actions.what & AGV_ACTION_TRIP) != 0u);
+    TEST_ASSERT_TRUE((agv_core_decide(core, &f.ports, 0).actions.what & AGV_ACTION_TRIP) != 0);
     expect_state(&f, AGV_STATE_TRIPPED);
     expect_reason(&f, AGV_FAULT_TX_GATE_REFUSED);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
@@ -197,7 +197,7 @@ static void foreign_drive_at(uint32_t ms, uint16_t us) {
 void test_a_stamp_of_a_turn_of_the_microseconds_ago_is_old(void) {
     f.now_ms = 5000000;
     fixture_standby(&f);
-    foreign_drive_at(f.now_ms - 4294967u, 0);
+    foreign_drive_at(f.now_ms - 4294967, 0);
     TEST_ASSERT_EQUAL_UINT32(f.now_ms, core->timers.now_ms);
 }
 
@@ -221,7 +221,7 @@ void test_both_clocks_agree(void) {
 /* Shows: INT-5, P1, MEMORY_CORRUPTED */
 void test_a_flipped_bit_in_the_identifiers_is_repaired(void) {
     fixture_standby(&f);
-    core->ids.of[AGV_MSG_GEAR_COMMAND] ^= 1u;
+    core->ids.of[AGV_MSG_GEAR_COMMAND] ^= 1;
     fixture_run(&f, 1);
     expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
     TEST_ASSERT_EQUAL_HEX16(0x168, core->ids.of[AGV_MSG_GEAR_COMMAND]);

@@ -62,7 +62,7 @@ static void expect_grid(uint32_t start_ms, uint32_t duration_ms) {
 
 /* Shows: TIM-1, FSM-2 */
 void test_first_slots_then_cycles_for_a_day_without_drift(void) {
-    expect_grid(0, 86400000u);
+    expect_grid(0, 86400000);
 }
 
 /* Shows: TIM-1, TIM-2 */
@@ -222,5 +222,5 @@ TEST_CASE(0x60000000, 16106128)
 TEST_CASE(0x7FFFFFFF, 21474837)
 void test_a_slot_that_is_very_late_is_due(uint32_t late_ms, uint32_t slots) {
     restart(0);
-    TEST_ASSERT_EQUAL_UINT32(slots, agv_scheduler_due(&scheduler, 100u + late_ms, AGV_MSG_TURN_SIGNAL_COMMAND));
+    TEST_ASSERT_EQUAL_UINT32(slots, agv_scheduler_due(&scheduler, 100 + late_ms, AGV_MSG_TURN_SIGNAL_COMMAND));
 }

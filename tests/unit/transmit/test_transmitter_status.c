@@ -146,14 +146,14 @@ void test_there_is_no_status_frame_in_bus_off(void) {
 /* A status frame that was passed to the HAL within the last 2 ms may have been withdrawn. An older one has left. */
 /* Shows: TOP-3, SUP-7 */
 void test_a_status_frame_that_may_have_been_withdrawn_is_sent_again(void) {
-    for (unsigned age_ms = 2; age_ms <= 3u; age_ms++) {
+    for (unsigned age_ms = 2; age_ms <= 3; age_ms++) {
         setUp();
         with_status_frame();
         EXPECT_COUNT_AFTER(1, 1);
         tick(age_ms - 1);
-        agv_timers_advance(&timers, &config, timers.now_ms + 1u, 0);
+        agv_timers_advance(&timers, &config, timers.now_ms + 1, 0);
         agv_transmitter_withdraw(&transmitter, &timers, true);
-        EXPECT_COUNT_AFTER(1, (age_ms == 2u) ? 2 : 1);
+        EXPECT_COUNT_AFTER(1, (age_ms == 2) ? 2 : 1);
     }
 }
 

@@ -88,7 +88,7 @@ static void print_value(const completion_value_t *value) {
 /** Print the options, or only those that may be given again. */
 static void print_options(const option_syntax_t *syntax, bool only_again) {
     const char *separator = "";
-    for (size_t i = 0u; options_at(syntax, i) != NULL; i++) {
+    for (size_t i = 0; options_at(syntax, i) != NULL; i++) {
         const option_t *option = options_at(syntax, i);
         if (!only_again || option->adds_up) {
             (void)printf("%s%s", separator, option->name);
@@ -104,7 +104,7 @@ static void print_command(const void *ctx, const option_syntax_t *syntax) {
     (void)printf("' again='");
     print_options(syntax, true);
     (void)printf("'\n        case $2 in\n");
-    for (size_t i = 0u; options_at(syntax, i) != NULL; i++) {
+    for (size_t i = 0; options_at(syntax, i) != NULL; i++) {
         const option_t *option = options_at(syntax, i);
         if (option->value != NULL) {
             const completion_value_t value = completion_of_option(option);

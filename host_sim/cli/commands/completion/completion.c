@@ -13,7 +13,7 @@ completion_value_t completion_of_option(const option_t *option) {
 }
 
 completion_value_t completion_of_operand(const option_syntax_t *syntax) {
-    const bool has_operand = syntax->operands_max > 0u;
+    const bool has_operand = syntax->operands_max > 0;
     return (completion_value_t){
         .is_file = has_operand && (syntax->words == NULL),
         .words = has_operand ? syntax->words : NULL,
@@ -38,7 +38,7 @@ void completion_print_escaped(const char *text, const char *special) {
 }
 
 void completion_each_command(option_show_fn *show) {
-    for (size_t i = 0u; i < COMMAND_COUNT; i++) {
+    for (size_t i = 0; i < COMMAND_COUNT; i++) {
         (void)command_show(&COMMANDS[i], show);
     }
 }

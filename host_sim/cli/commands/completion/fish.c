@@ -19,7 +19,7 @@ static void print_value(const completion_value_t *value) {
 }
 
 static void print_operand(const char *command, const option_syntax_t *syntax) {
-    if (syntax->operands_max == 0u) {
+    if (syntax->operands_max == 0) {
         return;
     }
     (void)printf("complete -c host_sim -n '__fish_seen_subcommand_from %s'", command);
@@ -37,7 +37,7 @@ static void print_command(const void *ctx, const option_syntax_t *syntax) {
     (void)printf("\ncomplete -c host_sim -n __fish_use_subcommand -a %s -d '", command->name);
     completion_print_escaped(command->help, SPECIAL);
     (void)printf("'\n");
-    for (size_t i = 0u; options_at(syntax, i) != NULL; i++) {
+    for (size_t i = 0; options_at(syntax, i) != NULL; i++) {
         const option_t *option = options_at(syntax, i);
         const bool is_short = option->name[1] != '-';
         (void)printf("complete -c host_sim -n '__fish_seen_subcommand_from %s' -%c %s", command->name,

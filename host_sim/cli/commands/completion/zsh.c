@@ -14,7 +14,7 @@ static void print_action(const completion_value_t *value) {
         value->is_interface ? "{ compadd -- $(" COMPLETION_CAN_INTERFACES ") }" : NULL,
     };
     const char *action = NULL;
-    for (size_t i = 0u; (i < sizeof actions / sizeof actions[0]) && (action == NULL); i++) {
+    for (size_t i = 0; (i < sizeof actions / sizeof actions[0]) && (action == NULL); i++) {
         action = actions[i];
     }
     if (value->words == NULL) {
@@ -46,12 +46,12 @@ static void print_option(const option_t *option) {
 static void print_command(const void *ctx, const option_syntax_t *syntax) {
     const command_t *command = ctx;
     (void)printf("    %s)\n        _arguments -S '(- *)--help[print the help]'", command->name);
-    for (size_t i = 0u; options_at(syntax, i) != NULL; i++) {
+    for (size_t i = 0; options_at(syntax, i) != NULL; i++) {
         print_option(options_at(syntax, i));
     }
-    if (syntax->operands_max > 0u) {
+    if (syntax->operands_max > 0) {
         const completion_value_t operand = completion_of_operand(syntax);
-        (void)printf(" \\\n            '%s:%s:", (syntax->operands_max > 1u) ? "*" : "1", syntax->operand);
+        (void)printf(" \\\n            '%s:%s:", (syntax->operands_max > 1) ? "*" : "1", syntax->operand);
         print_action(&operand);
         (void)printf("'");
     }
@@ -64,7 +64,7 @@ void completion_print_zsh(void) {
                  "\n"
                  "_host_sim() {\n"
                  "    local -a commands=(\n");
-    for (size_t i = 0u; i < COMMAND_COUNT; i++) {
+    for (size_t i = 0; i < COMMAND_COUNT; i++) {
         (void)printf("        '%s:", COMMANDS[i].name);
         completion_print_escaped(COMMANDS[i].help, SPECIAL);
         (void)printf("'\n");
