@@ -9,6 +9,8 @@
 
 enum { MEDIAN = 500, P999 = 999, BITS_PER_WORD = 32, WORD_CHOICES = 256, LINE_SIZE = 160, UNKNOWN_SHOWN_MAX = 40 };
 
+#define LEAST_LATE_MS (-0.01) /* what two decimals show */
+
 static void print_head(const survey_result_t *result) {
     const observation_t *observation = &result->observation;
     const uint64_t ms = shown_ms(observation->first_us, observation->last_us);
@@ -79,8 +81,9 @@ static void print_deadline(const traffic_watch_t *watch) {
     }
     (void)printf(" %8" PRIu32 "%s", watch->deadline_ms, (watch->when == TRAFFIC_ENGAGED) ? "*" : " ");
     if (watch->gaps.count > 0) {
-        (void)printf(" %9.2f%s", (double)watch->deadline_ms - ms_of_us(watch->gaps.longest_us),
-                     (watch->late > 0) ? "  LATE" : "");
+        const double left_ms = (double)watch->deadline_ms - ms_of_us(watch->gaps.longest_us);
+        const bool rounds_to_zero = (left_ms < 0.0) && (left_ms > LEAST_LATE_MS);
+        (void)printf(" %9.2f%s", rounds_to_zero ? LEAST_LATE_MS : left_ms, (watch->late > 0) ? "  LATE" : "");
     } else {
         (void)printf(" %9s", "-");
     }

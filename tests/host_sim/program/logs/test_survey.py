@@ -443,6 +443,16 @@ class Text(Case):
         half = self.survey("".join(lines), "--bitrate", "250000")["load"][0]
         self.assertAlmostEqual(half["most_pct"], 54.0, delta=0.02)
 
+    def test_a_gap_that_exceeds_the_deadline_by_microseconds_does_not_show_0(self):
+        def edit(frame):
+            if frame.name == "vehicle_status" and 1000 <= frame.t_ms < 1040:
+                return None
+            frame.t_us += 4 if frame.name == "vehicle_status" and frame.t_ms == 1040 else 0
+            return frame
+
+        self.write("log", traffic.log(traffic.frames(5000, edit=edit)))
+        self.assertRegex(self.run_good("survey", "log").stdout, r"\n363h .* 50 +-0\.01  LATE\n")
+
     def test_a_log_that_says_nothing_of_the_defaults(self):
         unknown, notes, fit = verdicts = ("# No message of the protocol came often enough to evaluate the defaults.",
                                           "# No setting needs another value, but the findings below must be explained first.", "# The defaults fit.")
