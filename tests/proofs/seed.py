@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Seeded faults: each is one or more lines of seeded.tsv. Its checker must find it and print the expected message.
 
 usage: seed.py check                    the old text of each line must occur exactly once in its file

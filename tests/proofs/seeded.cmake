@@ -11,7 +11,7 @@ set(AGV_SEED_FOLDER ${CMAKE_CURRENT_LIST_DIR})
 set_property(DIRECTORY ${PROJECT_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${AGV_SEED_FOLDER}/seeded.tsv)
 add_custom_target(fuzz_seeded)
 
-# Without Python the programs still build (the demo installs none). The tests of the seeded faults then fail.
+# Without Python the programs still build. The tests of the seeded faults then fail.
 find_program(AGV_SEED_PYTHON python3)
 if(NOT AGV_SEED_PYTHON)
   message(STATUS "The seeded faults are left out: there is no python3")

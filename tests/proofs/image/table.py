@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Put together the tables of sweep: which instruction of which function each line is, and the places that do harm.
 
 usage: table.py IMAGE TABLE... [--out FILE] [--sums PAGE] [--places PAGE] [--most SHARE]
