@@ -7,6 +7,7 @@ usage: check-tidy.py [--changed] [FILE...]
   FILE: one that is not part of the build is compiled by itself, as C11
 """
 import concurrent.futures
+import functools
 import hashlib
 import json
 import os
@@ -43,17 +44,31 @@ def compile_commands(configure):
     return commands
 
 
+@functools.cache
+def sum_of(part):
+    return hashlib.sha256((BUILD / part).read_bytes()).digest()
+
+
 def stamp_of(file, command, common):
     """Exists when nothing was found. Its name is a sum of all that this depends on: command, file, headers that it includes."""
+    def named(parts):
+        content = common + " ".join(command).encode() + b"".join(sum_of(part) for part in parts)
+        return PASSED / hashlib.sha256(content).hexdigest()
+
+    known = PASSED / f"{hashlib.sha256(str(file).encode()).hexdigest()}.parts"  # the same while none of them changes
+    try:
+        stamp = named(known.read_text(encoding="utf-8").split())
+        if stamp.exists():
+            return stamp
+    except FileNotFoundError:  # not checked before, or a header has gone
+        pass
     try:
         rule = output_of(*command, "-MM", file, cwd=BUILD).decode()
     except subprocess.CalledProcessError:  # clang-tidy will say why
         return None
     parts = rule.replace("\\\n", " ").split(": ", 1)[1].split()
-    content = common + " ".join(command).encode()
-    for part in parts:
-        content += hashlib.sha256((BUILD / part).read_bytes()).digest()
-    return PASSED / hashlib.sha256(content).hexdigest()
+    known.write_text("\n".join(parts), encoding="utf-8")
+    return named(parts)
 
 
 def check(file, command, stamp):
