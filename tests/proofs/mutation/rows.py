@@ -5,12 +5,14 @@ In the file rows an entry is
     - the old line
     + the new one
 where the old line stands once in FILE, a source of the core; how far it is indented does not matter. A change counts when an
-assertion fails in a test that names the row.
+assertion fails in a test that names the row. Run as a program, this says whether each old line stands once.
 """
 import collections
+import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 
 import bench
@@ -118,3 +120,21 @@ def check(at, path, shown, only=()):
     print(f"{len(of_core)} rows, {noticed} broken by a stored mutant and noticed by a test that names them, "
           f"{len(problems)} problems")
     return 1 if problems else 0
+
+
+def main():
+    problems = []
+    changes = read_changes(pathlib.Path(__file__).with_name("rows"), problems)
+    core = {path.name: path for path in bench.core_files()}
+    for change in changes:
+        path = core.get(change.file, bench.ROOT / change.file)
+        if changed_text(path.read_text(encoding="utf-8"), change) is None:
+            problems.append(f"{change.row}: {change.file}: '{change.old}' does not stand in the file once")
+    for problem in problems:
+        print(f"rows: {problem}")
+    print(f"{len(changes) - len(problems)} of {len(changes)} stored mutants can be applied")
+    return 1 if problems or not changes else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
