@@ -74,3 +74,21 @@ void test_a_transient_that_has_not_ended_trips_at_the_next_engagement(void) {
     engage();
     expect_tripped(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
 }
+
+/* reengage_ms: the deadlines of the commands begin anew, though the engagement before ended less than 1 s ago. */
+/* Shows: FSM-3, SUP-3 */
+void test_an_engagement_soon_after_a_reset_does_not_continue_the_one_that_tripped(void) {
+    f.config.reengage_ms = 1000;
+    f.config.reset_hold_ms = 500;
+    fixture_active(&f);
+    fixture_run(&f, 2000);
+    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
+    fixture_run(&f, 200);
+    expect_tripped(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT);
+    fixture_vehicle_confirms(&f);
+    walk_reset(&f, 700);
+    expect_state(&f, AGV_STATE_STANDBY);
+    engage();
+    expect_state_after(&f, 80, AGV_STATE_ACTIVE);
+    expect_tripped_after(&f, 100, AGV_FAULT_STEERING_COMMAND_TIMEOUT);
+}
