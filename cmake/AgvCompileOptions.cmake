@@ -1,7 +1,7 @@
 # How this project's own code is compiled. Link `agv_options` (PRIVATE) to get it; generated and foreign code does not.
 
 option(AGV_WARNINGS_AS_ERRORS "Warnings in the project's own code are errors" ON)
-option(AGV_QUICK_BUILD "Build host_sim alone, several files at once, without the optimisation of the whole program" OFF)
+option(AGV_QUICK_BUILD "Build host_sim alone, and quickly: see host_sim" OFF)
 set(AGV_INSTRUMENT "" CACHE STRING "Instrumentation: empty, sanitize, coverage, mcdc, mutation, fuzz or profile")
 set_property(CACHE AGV_INSTRUMENT PROPERTY STRINGS "" sanitize coverage mcdc mutation fuzz profile)
 
