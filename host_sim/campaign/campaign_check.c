@@ -11,8 +11,9 @@
 enum {
     GEAR_P = 0x08,
 
-    IN_FLIGHT_US = 4000,      /* a frame that is in the controller when the output closes */
-    BEAT_GAP_US = 250000,     /* 43Fh every 100 ms, half a cycle later after an answer */
+    IN_FLIGHT_US = 4000,  /* a frame that is in the controller when the output closes */
+    BEAT_GAP_US = 250000, /* 43Fh every 100 ms, half a cycle later after an answer */
+    EPS_MODE_BYTE = 3,
     HELD_TOLERANCE_DDEG = 50, /* between a measured angle and what the EPS sent last */
     CENTRE_DDEG = 9000,
     SIGNALS_BYTES = 7,
@@ -74,6 +75,11 @@ bool campaign_is_safe_command(agv_message_t message, const hal_can_frame_t *fram
     }
 }
 
+/** The angle of the steering, as 067h counts it. */
+static int32_t measured_ddeg(const campaign_check_t *check) {
+    return look(check).vehicle.angle_ddeg + CENTRE_DDEG;
+}
+
 static uint16_t angle_of(const hal_can_frame_t *frame) {
     return (uint16_t)(frame->data[0] | ((uint32_t)frame->data[1] << 8));
 }
@@ -84,7 +90,8 @@ static bool is_held_angle(campaign_check_t *check, const hal_can_frame_t *frame)
     if (!check->holds) {
         check->holds = true;
         check->held = angle;
-        return abs((int32_t)angle - check->angle_ddeg) <= HELD_TOLERANCE_DDEG;
+        const int32_t expected_ddeg = check->held_later ? measured_ddeg(check) : check->angle_ddeg;
+        return abs((int32_t)angle - expected_ddeg) <= HELD_TOLERANCE_DDEG;
     }
     return angle == check->held;
 }
@@ -119,11 +126,6 @@ static void check_beat(campaign_check_t *check, uint64_t t_us) {
     }
 }
 
-/** The angle of the steering, as 067h counts it. */
-static int32_t measured_ddeg(const campaign_check_t *check) {
-    return look(check).vehicle.angle_ddeg + CENTRE_DDEG;
-}
-
 /**
  * With an engagement, throttle 0 of an AI computer that has not seen it yet is passed on: only after a trip it counts.
  */
@@ -153,6 +155,9 @@ static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, co
     campaign_check_t *check = ctx;
     if ((from != SCENARIO_FROM_SUPERVISOR) && (message_of(check, frame) == check->plan->row->message)) {
         check->heard_us = t_us;
+    }
+    if (message_of(check, frame) == AGV_MSG_EPS_STATUS) {
+        check->eps_takes_angles = frame->data[EPS_MODE_BYTE] == AGV_EPS_MODE_ANGLE;
     }
     if ((from != SCENARIO_FROM_SUPERVISOR) || (side != HAL_CAN_VEHICLE)) {
         return;
@@ -190,6 +195,7 @@ static void on_state(campaign_check_t *check, uint64_t t_ms, const agv_event_t *
     if ((event->b == AGV_STATE_TRIPPED) && (check->reason < 0)) {
         check->reason = event->c;
         check->silent = is_silent(check);
+        check->held_later = !check->eps_takes_angles;
         check->angle_ddeg =
             (check->plan->row->fault == AGV_FAULT_STEERING_ANGLE_INVALID) ? check->reported_ddeg : measured_ddeg(check);
     }

@@ -56,6 +56,11 @@ class Results(Campaign):
         self.assertEqual(len(self.lines("3.jsonl")), 1)
         self.assertIn("2 runs, 0 broken", self.campaign("--merge", *files).stdout)
 
+    def test_an_angle_that_is_held_once_the_eps_takes_it_is_no_unsafe_frame(self):
+        """Run 5541: MODE_INVALID in manual. The EPS changes to angle control after the trip, while the wheels turn."""
+        self.campaign("--runs", 50000, "--seed", 1, "--shard", "542/1000", "--results", "out.jsonl")
+        self.assertIn(5541, [line.get("run") for line in self.lines("out.jsonl")])
+
     def test_another_seed_is_another_campaign(self):
         self.shard(1, 1, seed=7, name="a")
         self.shard(1, 1, seed=8, name="b")
