@@ -84,16 +84,30 @@ static uint16_t angle_of(const hal_can_frame_t *frame) {
     return (uint16_t)(frame->data[0] | ((uint32_t)frame->data[1] << 8));
 }
 
+static bool is_between(int32_t ddeg, int32_t a_ddeg, int32_t b_ddeg) {
+    const int32_t low = (a_ddeg < b_ddeg) ? a_ddeg : b_ddeg;
+    const int32_t high = (a_ddeg < b_ddeg) ? b_ddeg : a_ddeg;
+    return (ddeg >= low - HELD_TOLERANCE_DDEG) && (ddeg <= high + HELD_TOLERANCE_DDEG);
+}
+
 /** 065h: the angle at which the steering was, and always the same. */
 static bool is_held_angle(campaign_check_t *check, const hal_can_frame_t *frame) {
     const uint16_t angle = angle_of(frame);
     if (!check->holds) {
         check->holds = true;
         check->held = angle;
-        const int32_t expected_ddeg = check->held_later ? measured_ddeg(check) : check->angle_ddeg;
-        return abs((int32_t)angle - expected_ddeg) <= HELD_TOLERANCE_DDEG;
+        return is_between(angle, check->angle_ddeg, check->held_later ? measured_ddeg(check) : check->angle_ddeg);
     }
     return angle == check->held;
+}
+
+/** An EPS that comes to angle control after the trip: the angle to hold is one since then. */
+static void hear_eps(campaign_check_t *check, const hal_can_frame_t *frame) {
+    const bool takes = frame->data[EPS_MODE_BYTE] == AGV_EPS_MODE_ANGLE;
+    if (takes && !check->eps_takes_angles && check->held_later) {
+        check->angle_ddeg = measured_ddeg(check);
+    }
+    check->eps_takes_angles = takes;
 }
 
 static bool may_be_sent(campaign_check_t *check, agv_message_t message, const hal_can_frame_t *frame, bool in_init) {
@@ -157,7 +171,7 @@ static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, co
         check->heard_us = t_us;
     }
     if (message_of(check, frame) == AGV_MSG_EPS_STATUS) {
-        check->eps_takes_angles = frame->data[EPS_MODE_BYTE] == AGV_EPS_MODE_ANGLE;
+        hear_eps(check, frame);
     }
     if ((from != SCENARIO_FROM_SUPERVISOR) || (side != HAL_CAN_VEHICLE)) {
         return;

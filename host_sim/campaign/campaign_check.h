@@ -63,8 +63,9 @@ typedef struct {
     int32_t
         reported_ddeg; /**< the angle when the steps came; the last one that 067h reported, if they make it invalid */
     bool eps_takes_angles; /**< as the last 167h said */
-    bool held_later; /**< at the trip the EPS was not in angle control: the angle is that at the first 065h (FSM-10) */
-    int32_t angle_ddeg; /**< the angle to hold: that at the trip, or the reported one */
+    bool held_later;       /**< at the trip the EPS was not in angle control (FSM-10) */
+    int32_t
+        angle_ddeg; /**< the angle to hold: at the trip, or when the EPS came to angle control; or the reported one */
     campaign_state_t states[CAMPAIGN_STATES_MAX];
     size_t state_count;
 } campaign_check_t;
