@@ -33,14 +33,6 @@ def made_cells(rank, name, fault_class, led, flags, event):
             f"{led:02}" if led else "-", ", ".join(also) or "-"]
 
 
-def split(document, text):
-    if text.count(BEGIN) != 1 or text.count(END) != 1:
-        raise Problem(f"{document} needs the lines '{BEGIN}' and '{END}'")
-    before, rest = text.split(BEGIN)
-    table, after = rest.split(END)
-    return before, table, after
-
-
 def read_texts(table):
     """Fault -> its two text cells in the page."""
     texts = {}
@@ -79,9 +71,8 @@ def main():
     document = arguments.root / "docs/faults.md"
     faults = tables.faults(arguments.root)
     text = document.read_text(encoding="utf-8")
-    before, table, after = split("docs/faults.md", text)
-    texts = read_texts(table)
-    wanted = f"{before}{BEGIN}\n\n{make_table(faults, texts)}\n\n{END}{after}"
+    texts = read_texts(tables.section("docs/faults.md", text, BEGIN, END)[1])
+    wanted = tables.with_section("docs/faults.md", text, BEGIN, END, make_table(faults, texts))
     if not arguments.check:
         document.write_text(wanted, encoding="utf-8")
     elif wanted != text:

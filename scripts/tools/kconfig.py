@@ -94,14 +94,6 @@ def weakening_table(settings, faults):
     return "\n".join(lines)
 
 
-def manual_with(path, table):
-    text = path.read_text(encoding="utf-8")
-    if text.count(BEGIN) != 1 or END not in text.split(BEGIN)[1]:
-        raise Problem(f"{path} needs the lines '{BEGIN}' and '{END}'")
-    before, rest = text.split(BEGIN)
-    return f"{before}{BEGIN}\n\n{table}\n\n{END}{rest.split(END, 1)[1]}"
-
-
 def main():
     parser = argparse.ArgumentParser(description="the settings as Kconfig")
     parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2])
@@ -112,7 +104,8 @@ def main():
                     make(settings, messages, faults)))
     manual = "docs/safety-manual.md"
     if (arguments.root / "docs").exists():
-        made[manual] = manual_with(arguments.root / manual, weakening_table(settings, faults))
+        text = (arguments.root / manual).read_text(encoding="utf-8")
+        made[manual] = tables.with_section(manual, text, BEGIN, END, weakening_table(settings, faults))
     for name, text in made.items():
         path = arguments.root / name
         if not arguments.check:

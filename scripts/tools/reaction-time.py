@@ -18,6 +18,8 @@ import re
 import subprocess
 import sys
 
+import tables
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BEGIN, END = "<!-- {}: made by scripts/tools/reaction-time.py -->", "<!-- end of {} -->"
 BITRATES = (125000, 250000, 500000)
@@ -445,11 +447,7 @@ def read_figures(text):
 
 
 def put(text, name, table):
-    begin, end = BEGIN.format(name), END.format(name)
-    if text.count(begin) != 1 or text.count(end) != 1:
-        raise Problem(f"docs/reaction-time.md needs the lines '{begin}' and '{end}'")
-    before, rest = text.split(begin)
-    return f"{before}{begin}\n\n{table}\n\n{end}{rest.split(end)[1]}"
+    return tables.with_section("docs/reaction-time.md", text, BEGIN.format(name), END.format(name), table)
 
 
 def make_page(text, derived, figures):

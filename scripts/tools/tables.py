@@ -1,4 +1,7 @@
-"""The tables of the core (firmware/include/agv/*.def), read once for all scripts. A row that is not understood is a Problem."""
+"""The tables of the core (firmware/include/agv/*.def), read once for all scripts, and the sections of pages that scripts make.
+
+A row that is not understood is a Problem, as is a page without the lines around its section.
+"""
 import collections
 import re
 
@@ -56,3 +59,17 @@ def settings(root):
 
 def messages(root):
     return read(root / HEADERS / "message_table.def", [(begin, MESSAGE, Message) for begin in ("AGV_COMMAND(", "AGV_STATUS(")])
+
+
+def section(page, text, begin, end):
+    """What stands before, between and after the lines begin and end of a text. page: its name, for the message."""
+    if text.count(begin) != 1 or end not in text.split(begin)[1]:
+        raise Problem(f"{page} needs the lines '{begin}' and '{end}'")
+    before, rest = text.split(begin)
+    return before, *rest.split(end, 1)
+
+
+def with_section(page, text, begin, end, content):
+    """The text with this content between the lines begin and end."""
+    before, _, after = section(page, text, begin, end)
+    return f"{before}{begin}\n\n{content}\n\n{end}{after}"

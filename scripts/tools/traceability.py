@@ -207,18 +207,10 @@ def markdown(shown, waiting):
     return "\n".join(lines)
 
 
-def replace_section(text, begin, section):
-    before, rest = text.split(begin)
-    return f"{before}{begin}\n\n{section}\n\n{END}{rest.split(END, 1)[1]}"
-
-
 def bring_up_to_date(document, begin, section, write, problems):
     """Write a generated section, or compare it."""
     text = document.read_text(encoding="utf-8") if document.exists() else ""
-    if text.count(begin) != 1 or END not in text.split(begin)[1]:
-        problems.append(f"{document.name} needs the lines '{begin}' and '{END}'")
-        return
-    wanted = replace_section(text, begin, section)
+    wanted = tables.with_section(document.name, text, begin, END, section)
     if write:
         document.write_text(wanted, encoding="utf-8")
     elif wanted != text:

@@ -17,6 +17,8 @@ import pickle
 import re
 import sys
 
+import tables
+
 BEGIN = "<!-- board table: made by scripts/tools/zephyr-board.py -->"
 END = "<!-- end of board table -->"
 NODE = "agv,supervisor"
@@ -417,10 +419,7 @@ def table(builds):
 
 def write_table(text):
     page = pathlib.Path(__file__).resolve().parents[2] / "docs/firmware.md"
-    old = page.read_text(encoding="utf-8")
-    if old.count(BEGIN) != 1 or old.count(END) != 1:
-        raise Refused(f"{page} needs the lines '{BEGIN}' and '{END}'")
-    page.write_text(f"{old.split(BEGIN)[0]}{BEGIN}\n\n{text}\n\n{END}{old.split(END)[1]}", encoding="utf-8")
+    page.write_text(tables.with_section(page, page.read_text(encoding="utf-8"), BEGIN, END, text), encoding="utf-8")
 
 
 def main():

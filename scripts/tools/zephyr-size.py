@@ -12,6 +12,8 @@ import re
 import subprocess
 import sys
 
+import tables
+
 BEGIN = "<!-- size table: made by scripts/tools/zephyr-size.py -->"
 END = "<!-- end of size table -->"
 SIMULATED = "native_sim"
@@ -72,11 +74,7 @@ def main():
         print(table)
         return
     page = pathlib.Path(__file__).resolve().parents[2] / "docs/firmware.md"
-    text = page.read_text(encoding="utf-8")
-    if text.count(BEGIN) != 1 or text.count(END) != 1:
-        refuse(f"{page} needs the lines '{BEGIN}' and '{END}'")
-    before, after = text.split(BEGIN)[0], text.split(END)[1]
-    page.write_text(f"{before}{BEGIN}\n\n{table}\n\n{END}{after}", encoding="utf-8")
+    page.write_text(tables.with_section(page, page.read_text(encoding="utf-8"), BEGIN, END, table), encoding="utf-8")
 
 
 main()

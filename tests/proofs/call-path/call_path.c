@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 #include "agv/supervisor.h"
-#include "null_hal.h"
+#include "hal_sim/sim_hal.h"
 #include "traffic.h"
 
 void __cyg_profile_func_enter(void *function, void *site);
@@ -34,7 +34,7 @@ void __cyg_profile_func_exit(void *function, void *site) {
 
 enum { STANDBY_MS = 700, ACTIVE_MS = 2000 };
 
-static struct hal port;
+static hal_t port; /* a port without a bus: nobody gets what is sent */
 static agv_recorder_t recorder;
 static agv_supervisor_t supervisor;
 static const agv_ports_t ports = {.hal = &port, .recorder = &recorder};
@@ -54,8 +54,9 @@ static void step(void) {
             send(&traffic[i]);
         }
     }
+    sim_hal_set_now_ms(&port, ++now_ms);
     agv_supervisor_receive_alive(&supervisor);
-    agv_supervisor_tick(&supervisor, &ports, ++now_ms);
+    agv_supervisor_tick(&supervisor, &ports, now_ms);
 }
 
 static bool run_to(uint32_t time_ms, agv_state_t state) {
@@ -74,9 +75,10 @@ static void traced_frame(const char *name, traffic_message_t *message) {
 
 static void traced_tick(const char *name) {
     (void)printf("%s\n", name);
+    sim_hal_set_now_ms(&port, ++now_ms);
     agv_supervisor_receive_alive(&supervisor);
     tracing = true;
-    agv_supervisor_tick(&supervisor, &ports, ++now_ms);
+    agv_supervisor_tick(&supervisor, &ports, now_ms);
     tracing = false;
 }
 
@@ -86,6 +88,7 @@ int main(void) {
     traffic_address(traffic, &config);
     traffic_heal(traffic);
     traffic[M_GEAR].data[0] = GEAR_D;
+    sim_hal_init_direct(&port, NULL, 1, NULL, NULL);
     agv_supervisor_start(&supervisor, &ports, &config, now_ms);
     if (!run_to(STANDBY_MS, AGV_STATE_STANDBY)) {
         return 1;
