@@ -4,14 +4,11 @@ A program of its own and not part of a discovery: without Chromium it ends with 
 AGV_PAGE is the folder of the page, HOST_SIM the native program, AGV_AXE the file of axe-core.
 """
 import base64
-import functools
-import http.server
 import os
 import pathlib
 import re
 import subprocess
 import sys
-import threading
 import time
 import unittest
 
@@ -29,12 +26,8 @@ STATE = "document.getElementById('state').textContent"
 MESSAGE = "document.getElementById('message').hidden ? '' : document.getElementById('message').textContent"
 
 
-class Handler(http.server.SimpleHTTPRequestHandler):
-    extensions_map = {**http.server.SimpleHTTPRequestHandler.extensions_map, ".js": "text/javascript", ".wasm": "application/wasm"}
+class Handler(browser.PageHandler):
     missing = None  # a file that the server does not have
-
-    def log_message(self, *_):
-        pass
 
     def end_headers(self):
         self.send_header("Cache-Control", "no-store")
@@ -57,9 +50,7 @@ def native(*arguments):
 class Page(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, directory=str(PAGE)))
-        threading.Thread(target=cls.server.serve_forever, daemon=True).start()
-        cls.address = f"http://127.0.0.1:{cls.server.server_port}/"
+        cls.server, cls.address = browser.serve(PAGE, Handler)
         cls.browser = browser.Browser()
         cls.addClassCleanup(cls.server.shutdown)
         cls.addClassCleanup(cls.browser.__exit__)

@@ -8,13 +8,13 @@ import html
 import os
 import pathlib
 import re
-import shlex
-import subprocess
 import sys
 import tempfile
 import time
 
-PATIENCE_S = 30
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tests/host_sim/program"))
+import tmux  # noqa: E402
+
 CELL_WIDTH, CELL_HEIGHT, BASELINE, MARGIN = 8, 18, 13, 10
 BACKGROUND, FOREGROUND = "#16191d", "#d5d9de"
 COLOURS = {31: "#ff6b68", 32: "#7bc275", 33: "#e0b44c", 90: "#7f8790"}
@@ -24,24 +24,18 @@ ESCAPE = re.compile(r"\x1b\[([0-9;]*)m|\x1b[()][0B]|[\x0e\x0f]")
 def capture(width, height, text, command):
     """The lines of the screen, with their control sequences."""
     with tempfile.TemporaryDirectory() as folder:
-        def tmux(*arguments):
-            return subprocess.run(["tmux", "-S", folder + "/tmux", *arguments], check=True, stdout=subprocess.PIPE,
-                                  env={**os.environ, "LC_ALL": "C.UTF-8"}).stdout.decode("utf-8")
-        tmux("-f", "/dev/null", "new-session", "-d", "-x", width, "-y", height,
-             "env LANG=C.UTF-8 NO_COLOR= " + shlex.join(command))
+        terminal = tmux.Tmux(pathlib.Path(folder), width, height, "env", "-C", os.getcwd(), *command)
         try:
-            end = time.monotonic() + PATIENCE_S
-            while text not in tmux("capture-pane", "-p"):
-                if time.monotonic() > end:
-                    sys.exit(f"terminal-picture: no '{text}' on the screen")
-                time.sleep(0.1)
-            before, screen = None, ""
+            terminal.wait_for(text)
+            before, screen = None, []
             while screen != before:  # the program may still be drawing
                 time.sleep(0.3)
-                before, screen = screen, tmux("capture-pane", "-p", "-e", "-N")
-            return screen.split("\n")
+                before, screen = screen, terminal.lines("-e", "-N")
+            return screen
+        except AssertionError as error:
+            sys.exit(f"terminal-picture: {error}")
         finally:
-            tmux("kill-server")
+            terminal.close()
 
 
 def runs(line, style):

@@ -1,11 +1,8 @@
 #!/usr/bin/python3
 """Draw docs/pictures/web.png from the built page (preset wasm). Needs Chromium and pngquant. usage: web-picture"""
-import functools
-import http.server
 import pathlib
 import subprocess
 import sys
-import threading
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
@@ -23,13 +20,6 @@ RUN = """(async () => {
 })()"""
 
 
-class Handler(http.server.SimpleHTTPRequestHandler):
-    extensions_map = {".js": "text/javascript", ".wasm": "application/wasm", ".css": "text/css", "": "text/html"}
-
-    def log_message(self, *_):
-        pass
-
-
 def wait(chromium, script):
     while not chromium.run(f"Boolean({script})"):
         time.sleep(0.1)
@@ -40,10 +30,9 @@ def main():
         sys.exit("web-picture: there is no Chromium; Debian has it as chromium")
     if not (PAGE / "index.html").exists():
         sys.exit("web-picture: build the page first: cmake --preset wasm && cmake --build --preset wasm")
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, directory=str(PAGE)))
-    threading.Thread(target=server.serve_forever, daemon=True).start()
+    server, address = browser.serve(PAGE)
     with browser.Browser() as chromium:
-        chromium.open(f"http://127.0.0.1:{server.server_port}/", 1320, 1000)
+        chromium.open(address, 1320, 1000)
         wait(chromium, "document.documentElement.dataset.ready === 'yes'")
         chromium.run(RUN)
         wait(chromium, "document.querySelectorAll('#details p').length === 3")

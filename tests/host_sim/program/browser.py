@@ -1,5 +1,7 @@
 """Chromium without a window, driven through its debugging pipe: with Python's own library alone."""
 import base64
+import functools
+import http.server
 import json
 import os
 import pathlib
@@ -7,10 +9,26 @@ import select
 import shutil
 import subprocess
 import tempfile
+import threading
 import time
 
 NAMES = ("chromium", "chromium-browser", "google-chrome-stable", "google-chrome")
 PATIENCE_S = 60
+
+
+class PageHandler(http.server.SimpleHTTPRequestHandler):
+    """Serves the files of a folder, with the types that a page with WebAssembly needs."""
+    extensions_map = {**http.server.SimpleHTTPRequestHandler.extensions_map, ".js": "text/javascript", ".wasm": "application/wasm"}
+
+    def log_message(self, *_):
+        pass
+
+
+def serve(folder, handler=PageHandler):
+    """Serve a folder, until shutdown() of what is returned. Returns the server and its address."""
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(handler, directory=str(folder)))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    return server, f"http://127.0.0.1:{server.server_port}/"
 
 
 def find():

@@ -9,7 +9,6 @@ import random
 
 import traffic
 
-AI = ("turn_signal_command", "gear_command", "throttle_command", "steering_command")
 CYCLES = {name: cycle for name, cycle, _, _ in traffic.MESSAGES}
 SOME_CYCLES = (5, 10, 20, 25, 40, 50, 100)
 ENGAGED_MS, MANUAL_MS, END_MS = 6000, 34000, 40000
@@ -125,7 +124,7 @@ def frames(ids, cycles=None, lag_ms=120, seed=1, silent=(), strangers=(), edit=N
     for name, number, cycle, make in senders:
         for count, start_us in enumerate(range(draw.randrange(cycle * 1000), END_MS * 1000, cycle * 1000)):
             t_us = start_us + draw.randrange(cycle * 60)
-            if name in AI and silent and silent[0] <= t_us / 1000 < silent[1]:
+            if name in traffic.AI and silent and silent[0] <= t_us / 1000 < silent[1]:
                 continue
             frame = traffic.Frame(t_us, name, number, make(name, count, t_us // 1000, drive), "can0")
             edited = frame if edit is None else edit(frame)

@@ -106,29 +106,6 @@ class Kconfig(hostsim.Case):
         self.assertEqual(checksum_of(text), "%08X" % expected)
 
 
-class Refusals(hostsim.Case):
-    def refuse_config(self, text, *parts):
-        self.write("c.yaml", text)
-        self.write("log", LOG)
-        for arguments in (("config", "--config", "c.yaml"), ("replay", "--config", "c.yaml", "log"),
-                          ("config", "--to-kconfig", "--config=c.yaml")):
-            result = self.run_program(*arguments)
-            self.assert_refused(result, *parts)
-            self.assertEqual(result.stdout, "")
-
-    # All that a file may have wrong: tests/host_sim/config/test_config_file.c
-    # Shows: INT-2
-    def test_what_makes_no_sense_is_refused_with_its_line(self):
-        for text, *parts in (
-                ("# deadline under three cycles\nvcu_heartbeat_timeout_ms: 29\n", "c.yaml:2: vcu_heartbeat_timeout_ms"),
-                ("id_gear_command: 0x169\nid_eps_status: 0x169\n", "c.yaml:2: id_eps_status: another message has"),
-                ("park: at_once\nclass_ai_heartbeat_lost: warn\n", "c.yaml:2: class_ai_heartbeat_lost: "),
-                (b"park: at_once\n\0\n", "c.yaml:2: "),
-        ):
-            with self.subTest(text):
-                self.refuse_config(text, *parts)
-
-
 class Deviations(hostsim.Case):
     # Shows: INT-2
     def test_what_is_not_the_default_is_listed_at_the_start(self):

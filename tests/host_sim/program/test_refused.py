@@ -12,7 +12,8 @@ import hostsim
 HOST_SIM = pathlib.Path(__file__).resolve().parents[3] / "host_sim"
 FILES = {"log": (HOST_SIM / "examples" / "ai-stops.log").read_text(encoding="ascii"), "c.yaml": "",
          "shared.yaml": "id_set: table\ntopology: shared\n", "gateway.yaml": "topology: gateway\n",
-         "renumbered.yaml": "id_gear_command: 0x169\n",
+         "renumbered.yaml": "id_gear_command: 0x169\n", "bad.yaml": "# under three cycles\nvcu_heartbeat_timeout_ms: 29\n",
+         "nul.yaml": "park: at_once\n\0\n",
          "s.yaml": (HOST_SIM / "scenarios" / "overview" / "healthy_shared.yaml").read_text(encoding="utf-8"),
          "bridge.yaml": "name: n\nshows: [TOP-2]\ntopology: gateway\nduration_ms: 1s\nexpect:\n  states: any\n"}
 FORM = "WHO-WHAT[,NAME=VALUE]...@TIME is needed, such as ai-stop@2s"
@@ -66,6 +67,8 @@ ROWS = {
     "config": (
         ("--schema --to-kconfig", "give only one of --schema and --to-kconfig"),
         ("--schema --config nofile", "--schema prints the schema of every configuration"),
+        *((option + " --config bad.yaml", "bad.yaml:2: vcu_heartbeat_timeout_ms") for option in ("", "--to-kconfig")),
+        ("--config nul.yaml", "nul.yaml:2: "),
         ("log", "unexpected argument 'log'")),
     "demo": (
         ("more", "more"),
@@ -106,6 +109,7 @@ ROWS = {
             "--out", "--events", "--store", "--why", "--trace", "--report")),
         ("--out - --events - log", "same file"),
         ("--config c.yaml --out c.yaml log", "same file"),
+        ("--config bad.yaml log", "bad.yaml:2: vcu_heartbeat_timeout_ms"),
         ("--topology SHARED log", "shared|gateway"),
         ("--id-set SHARED log", "heading|table"),
         ("--reset-cause SHARED log", "power-on|watchdog|brown-out|lock-up|software|unknown"),

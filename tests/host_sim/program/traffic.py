@@ -23,6 +23,10 @@ MESSAGES = (
     ("throttle_command", 100, 8700, "ai"),
 )
 
+VCU = ("vehicle_status", "throttle_status", "wheel_speed", "gear_status")
+EPS = ("steering_status", "eps_status", "steering_position")
+AI = ("steering_command", "turn_signal_command", "gear_command", "throttle_command")
+
 IDS = {
     "turn_signal_command": 0x43F,
     "gear_command": 0x168,
@@ -124,3 +128,32 @@ def repeated(text, times):
     length = seconds[-1][0] + 1 - seconds[0][0]
     return "".join(lines.replace("(%010d." % second, "(%010d." % (second + number * length))
                    for number in range(times) for second, lines in seconds)
+
+
+def edit_payload(name, at_ms, change, until_ms=None):
+    """An edit for traffic.frames: change the payload (a bytearray) of a message from a moment on."""
+    def edit(frame):
+        if frame.name == name and frame.t_ms >= at_ms and (until_ms is None or frame.t_ms < until_ms):
+            data = bytearray(frame.data)
+            change(data)
+            frame.data = bytes(data)
+        return frame
+    return edit
+
+
+def byte(index, value):
+    """A change of the payload, for edit_payload()."""
+    return lambda data: data.__setitem__(index, value)
+
+
+def raise_remote_signal_lost(data):
+    """A change of 363h, for edit_payload(): VCU alarm 1."""
+    data[4] |= 0x01
+
+
+def stop(names, at_ms, until_ms=None):
+    """An edit: messages that stop."""
+    def edit(frame):
+        stopped = frame.name in names and frame.t_ms >= at_ms and (until_ms is None or frame.t_ms < until_ms)
+        return None if stopped else frame
+    return edit

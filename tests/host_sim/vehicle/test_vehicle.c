@@ -288,15 +288,10 @@ void test_the_vcu_raises_its_own_alarms(void) {
 
 void test_the_vcu_hears_of_faults_of_the_eps(void) {
     connected = true;
-    vehicle_action_t fault = {.what = VEHICLE_DO_PATCH, .message = AGV_MSG_EPS_STATUS, .count = VEHICLE_FOREVER};
-    memset(fault.keep, 0xFF, sizeof fault.keep);
-    fault.keep[7] = 0x00u;
-    fault.value[7] = AGV_EPS_FAULT_TEMP_ABOVE_110;
-    (void)act(fault);
+    patch(AGV_MSG_EPS_STATUS, 7, 0xFFu, AGV_EPS_FAULT_TEMP_ABOVE_110, VEHICLE_FOREVER, 0);
     run_until(100);
     TEST_ASSERT_EQUAL_HEX8(0, look().alarms);
-    fault.value[7] = AGV_EPS_FAULT_OVER_VOLTAGE;
-    (void)act(fault);
+    patch(AGV_MSG_EPS_STATUS, 7, 0xFFu, AGV_EPS_FAULT_OVER_VOLTAGE, VEHICLE_FOREVER, 0);
     run_until(200);
     TEST_ASSERT_EQUAL_HEX8(AGV_VCU_ALARM_EPS_HARDWARE, look().alarms);
 }

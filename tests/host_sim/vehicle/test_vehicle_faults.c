@@ -142,34 +142,18 @@ void test_a_message_is_muted_for_so_many_frames(void) {
 }
 
 void test_a_field_keeps_a_value_for_so_many_frames(void) {
-    vehicle_action_t patch = {.what = VEHICLE_DO_PATCH, .message = AGV_MSG_VEHICLE_STATUS, .count = 2};
-
-    memset(patch.keep, 0xFF, sizeof patch.keep);
-    patch.keep[6] = 0x3Fu;
-    patch.value[6] = 0xC0u;
-    (void)act(patch);
+    patch(AGV_MSG_VEHICLE_STATUS, 6, 0xC0u, 0xC0u, 2, 0);
     run_until(20);
     TEST_ASSERT_EQUAL_HEX8(0xC0u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
     TEST_ASSERT_EQUAL_UINT8(1, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7]); /* the counter runs on */
     run_until(30);
     TEST_ASSERT_EQUAL_HEX8(0x40u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
-    patch.count = VEHICLE_FOREVER;
-    (void)act(patch);
+    patch(AGV_MSG_VEHICLE_STATUS, 6, 0xC0u, 0xC0u, VEHICLE_FOREVER, 0);
     run_until(1000);
     TEST_ASSERT_EQUAL_HEX8(0xC0u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_UNPATCH, .message = AGV_MSG_VEHICLE_STATUS});
     run_until(1010);
     TEST_ASSERT_EQUAL_HEX8(0x40u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
-}
-
-/* Byte @p index of 363h: the bits of @p mask as in @p value, for @p count frames. */
-static void patch_vehicle_status(unsigned index, uint8_t mask, uint8_t value, uint16_t count) {
-    vehicle_action_t patch = {.what = VEHICLE_DO_PATCH, .message = AGV_MSG_VEHICLE_STATUS, .count = count};
-
-    memset(patch.keep, 0xFF, sizeof patch.keep);
-    patch.keep[index] = (uint8_t)~mask;
-    patch.value[index] = value;
-    (void)act(patch);
 }
 
 static void expect_vehicle_status(uint32_t t_ms, uint8_t byte_1, uint8_t byte_2) {
@@ -180,10 +164,10 @@ static void expect_vehicle_status(uint32_t t_ms, uint8_t byte_1, uint8_t byte_2)
 
 void test_several_fields_of_a_message_keep_values_each_for_its_own_time(void) {
     expect_vehicle_status(10, 0x00u, 0x00u);
-    patch_vehicle_status(1, 0xFFu, 0xA5u, 2);
-    patch_vehicle_status(2, 0xFFu, 0x5Au, VEHICLE_FOREVER);
+    patch(AGV_MSG_VEHICLE_STATUS, 1, 0xFFu, 0xA5u, 2, 0);
+    patch(AGV_MSG_VEHICLE_STATUS, 2, 0xFFu, 0x5Au, VEHICLE_FOREVER, 0);
     expect_vehicle_status(20, 0xA5u, 0x5Au);
-    patch_vehicle_status(2, 0x0Fu, 0x03u, 2);
+    patch(AGV_MSG_VEHICLE_STATUS, 2, 0x0Fu, 0x03u, 2, 0);
     expect_vehicle_status(30, 0xA5u, 0x53u);
     expect_vehicle_status(40, 0x00u, 0x53u);
     expect_vehicle_status(50, 0x00u, 0x50u);

@@ -198,19 +198,10 @@ void test_a_short_43fh_is_no_sign_of_life(void) {
     TEST_ASSERT_EQUAL_HEX8(AGV_VCU_ALARM_AI_CAN_LOST, look().alarms);
 }
 
-static void patch_mode(uint8_t value, uint16_t count, uint16_t every) {
-    vehicle_action_t patch = {
-        .what = VEHICLE_DO_PATCH, .message = AGV_MSG_VEHICLE_STATUS, .count = count, .every = every};
-    memset(patch.keep, 0xFF, sizeof patch.keep);
-    patch.keep[6] = 0x3Fu;
-    patch.value[6] = value;
-    TEST_ASSERT_TRUE(act(patch));
-}
-
 void test_one_frame_in_so_many_carries_another_mode(void) {
     run_until(100);
     size_t first = sent_count;
-    patch_mode(0x80u, 1, 40);
+    patch(AGV_MSG_VEHICLE_STATUS, 6, 0xC0u, 0x80u, 1, 40);
     run_until(101);
     TEST_ASSERT_EQUAL_HEX8(0x80u, mode_byte()); /* the first one at once */
     run_until(111);
@@ -218,7 +209,7 @@ void test_one_frame_in_so_many_carries_another_mode(void) {
     run_until(4100); /* 400 frames */
     TEST_ASSERT_EQUAL_size_t(10, count_other(AGV_MSG_VEHICLE_STATUS, 6, 0x40u, first));
     first = sent_count;
-    patch_mode(0x00u, 30, 40); /* manual is right for 100 ms of every 400 ms */
+    patch(AGV_MSG_VEHICLE_STATUS, 6, 0xC0u, 0x00u, 30, 40); /* manual is right for 100 ms of every 400 ms */
     run_until(8100);
     TEST_ASSERT_EQUAL_size_t(300, count_other(AGV_MSG_VEHICLE_STATUS, 6, 0x40u, first));
     (void)act((vehicle_action_t){.what = VEHICLE_DO_UNPATCH, .message = AGV_MSG_VEHICLE_STATUS});

@@ -65,6 +65,16 @@ static bool act(vehicle_action_t action) {
     return vehicle_do(&vehicle, now_ms, &action);
 }
 
+/* Byte @p index of a message has the bits of @p mask as in @p value: in @p count frames, each @p every-th one (0: each). */
+static inline void patch(agv_message_t message, unsigned index, uint8_t mask, uint8_t value, uint16_t count,
+                         uint16_t every) {
+    vehicle_action_t action = {.what = VEHICLE_DO_PATCH, .message = message, .count = count, .every = every};
+    memset(action.keep, 0xFF, sizeof action.keep);
+    action.keep[index] = (uint8_t)~mask;
+    action.value[index] = value;
+    TEST_ASSERT_TRUE(act(action));
+}
+
 static vehicle_view_t look(void) {
     vehicle_view_t view;
     vehicle_view(&vehicle, now_ms, &view);

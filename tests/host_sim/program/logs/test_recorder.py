@@ -8,7 +8,7 @@ import zlib
 
 import hostsim
 import traffic
-from test_replay import byte, edit_payload, stop
+from traffic import byte, edit_payload, stop
 
 EVENT = 112    # bytes of agv_event_t (firmware/include/agv/recorder.h)
 EVENTS = 256   # of the ring at the end of agv_recorder_t

@@ -4,7 +4,7 @@ import unittest
 
 import hostsim
 import traffic
-from traffic import BASE_US, IDS, US_PER_MS
+from traffic import AI, BASE_US, EPS, IDS, US_PER_MS, VCU, byte, edit_payload, raise_remote_signal_lost, stop
 
 S = 1000000
 SAFE_LIGHTS = 0x43F
@@ -13,38 +13,6 @@ SAFE_THROTTLE = (0x075, bytes(8))
 
 STATUS = 0x7F0  # the status frame of the supervisor
 
-
-def edit_payload(name, at_ms, change, until_ms=None):
-    """An edit for traffic.frames: change the payload (a bytearray) of a message from a moment on."""
-    def edit(frame):
-        if frame.name == name and frame.t_ms >= at_ms and (until_ms is None or frame.t_ms < until_ms):
-            data = bytearray(frame.data)
-            change(data)
-            frame.data = bytes(data)
-        return frame
-    return edit
-
-
-def byte(index, value):
-    """A change of the payload, for edit_payload()."""
-    return lambda data: data.__setitem__(index, value)
-
-
-def stop(names, at_ms, until_ms=None):
-    """An edit: messages that stop."""
-    def edit(frame):
-        stopped = frame.name in names and frame.t_ms >= at_ms and (until_ms is None or frame.t_ms < until_ms)
-        return None if stopped else frame
-    return edit
-
-
-VCU = ("vehicle_status", "throttle_status", "wheel_speed", "gear_status")
-EPS = ("steering_status", "eps_status", "steering_position")
-AI = ("steering_command", "turn_signal_command", "gear_command", "throttle_command")
-
-
-def raise_remote_signal_lost(data):
-    data[4] |= 0x01
 
 
 class Healthy(hostsim.Case):

@@ -4,7 +4,7 @@ import unittest
 
 import hostsim
 import traffic
-from test_replay import AI, EPS, VCU, byte, edit_payload, stop
+from traffic import AI, EPS, VCU, byte, edit_payload, stop
 
 
 def log(edit=None, engage_ms=1000, duration_ms=4000, **options):

@@ -10,6 +10,7 @@ import resource
 import hostsim
 import other_vehicle
 import traffic
+from traffic import byte, edit_payload, stop
 
 MINUTE = 60000
 ENGAGED = 5000
@@ -46,11 +47,6 @@ def with_counter(frame, value):
     data = bytearray(frame.data)
     data[COUNTERS[frame.name]] = value & 0xFF
     return bytes(data)
-
-
-def silent(name, begin_ms, end_ms):
-    """Edit: a message is not sent for some time."""
-    return lambda frame: None if frame.name == name and begin_ms <= frame.t_ms < end_ms else frame
 
 
 class Case(hostsim.Case):
@@ -337,7 +333,7 @@ class Identifiers(Case):
 
     def test_a_gateway_has_its_commands_on_the_ai_side(self):
         def to_ai_side(frame):
-            frame.interface = "can1" if frame.name in other_vehicle.AI else "can0"
+            frame.interface = "can1" if frame.name in traffic.AI else "can0"
             return frame
         self.survey(other_vehicle.frames(self.OTHER, lag_ms=0, edit=to_ai_side), "--ai-if", "can1")
         self.assertEqual(self.proposed(), self.OTHER)
@@ -350,7 +346,7 @@ class NotRelaxed(Case):
                              ("steering_command", "STEERING_COMMAND_TIMEOUT"), ("eps_status", "EPS_STATUS_TIMEOUT"),
                              ("wheel_speed", "WHEEL_SPEED_TIMEOUT"), ("gear_command", "GEAR_COMMAND_TIMEOUT")):
             with self.subTest(name):
-                survey = self.survey(list(filter(silent(name, 50000, 50600), frames)))
+                survey = self.survey(list(filter(stop((name,), 50000, 50600), frames)))
                 self.assertEqual([key for key in self.settings() if key.endswith("_ms")], [])
                 self.assertEqual(self.trips_with_proposal()[0], reason)
                 self.assertEqual(self.message(survey, name)["late"], 1)
@@ -366,26 +362,18 @@ class NotRelaxed(Case):
 
     def test_a_slow_sender_that_fails_still_trips(self):
         slow = slower("throttle_status", 8)
-        frames = traffic.frames(MINUTE, ENGAGED, edit=lambda f: silent("throttle_status", 50000, 50600)(f) and slow(f))
+        frames = traffic.frames(MINUTE, ENGAGED, edit=lambda f: stop(("throttle_status",), 50000, 50600)(f) and slow(f))
         self.survey(frames)
         self.assertIn(self.settings()["throttle_status_timeout_ms"], ("240", "245"))
         self.assertEqual(self.trips_with_proposal()[0], "THROTTLE_STATUS_TIMEOUT")
 
     def test_a_counter_that_sticks_still_trips(self):
-        def edit(frame):
-            if frame.name == "steering_status" and frame.t_ms > 50000:
-                frame.data = with_counter(frame, 7)
-            return frame
-        survey = self.survey(traffic.frames(MINUTE, ENGAGED, edit=edit))
+        survey = self.survey(traffic.frames(MINUTE, ENGAGED, edit=edit_payload("steering_status", 50000, byte(0, 7))))
         self.assertEqual(self.trips_with_proposal()[0], "EPS_HEARTBEAT_STUCK")
         self.assertGreater(self.message(survey, "steering_status")["counter"]["longest_without_change_ms"], 9900)
 
     def test_an_alarm_keeps_its_class(self):
-        def edit(frame):
-            if frame.name == "eps_status" and frame.t_ms > 50000:
-                frame.data = frame.data[:7] + b"\x40"
-            return frame
-        survey = self.survey(traffic.frames(MINUTE, ENGAGED, edit=edit))
+        survey = self.survey(traffic.frames(MINUTE, ENGAGED, edit=edit_payload("eps_status", 50000, byte(7, 0x40))))
         self.assertEqual(self.trips_with_proposal()[0], "EPS_MOTOR_ENCODER")
         self.assertEqual(self.message(survey, "eps_status")["alarms"],
                          [{"name": "EPS_MOTOR_ENCODER", "first_ms": 50003.3, "frames": 1000}])

@@ -6,7 +6,7 @@ import unittest
 
 import hostsim
 import traffic
-from test_replay import EPS, byte, edit_payload, raise_remote_signal_lost, stop
+from traffic import EPS, byte, edit_payload, raise_remote_signal_lost, stop
 
 S = 1000000
 COLUMNS = 100
