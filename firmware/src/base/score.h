@@ -22,8 +22,8 @@ typedef struct {
 void agv_score_add(agv_score_t *score, bool bad, uint32_t frames);
 
 /**
- * Time budget of T ms. Every ms with the condition adds 1, every second ms without it subtracts 1, within 0..T. The fault
- * becomes present when the budget reaches T, and ends when it is 0 again.
+ * Time budget of T ms. Each ms with the condition adds 1, two ms without it subtract 1, within 0..T. The fault becomes
+ * present when the budget reaches T, and ends when it is 0 again.
  */
 typedef struct {
     uint16_t value_ms;
@@ -32,8 +32,8 @@ typedef struct {
 } agv_budget_t;
 
 /**
- * Whether a condition counts as held since the last tick. If that was 1 ms ago: what it was then, so a condition that is seen
- * for the first time has lasted for 0 ms. If the tick is late: what the condition is now.
+ * Whether a condition counts as held since the last tick. If that was 1 ms ago, the result is the condition of the last tick:
+ * a condition that is seen for the first time has lasted for 0 ms. If the tick is late, it is the condition of now.
  */
 static inline bool agv_held_since_tick(bool before, bool now, uint32_t elapsed_ms) {
     return (elapsed_ms == 1u) ? before : now;

@@ -44,7 +44,7 @@ static uint8_t button_of(uint8_t contact) {
     return (uint8_t)((contact == (uint8_t)HAL_CONTACT_OPEN) ? AGV_BUTTON_UP : AGV_BUTTON_UNHEARD);
 }
 
-/* HW-3: until it has been read alike for the first time, the button is unknown: one that is stuck is no press. */
+/* HW-3: a button is unknown until its input has been stable for the debounce time, so one that is stuck is no press. */
 static void debounce(agv_hardware_t *hardware, uint8_t contact, uint32_t elapsed_ms) {
     const uint8_t raw = button_of(contact);
     const uint32_t ms =

@@ -14,7 +14,7 @@
 #include "base/timers.h"
 #include "hal/hal.h"
 
-/** Time for which the reset button must be read alike, ms (HW-3). */
+/** Time for which the input of the reset button must be stable, ms (HW-3). */
 enum { AGV_BUTTON_DEBOUNCE_MS = 20 };
 
 /** State of a button. */
@@ -33,7 +33,7 @@ typedef struct {
     uint8_t feedback;      /**< hal_contact_t of the safety output at the last tick, or an invalid value */
     uint8_t button;        /**< agv_button_t, debounced */
     uint8_t button_raw;    /**< agv_button_t at the last tick */
-    uint8_t button_ms;     /**< for so long it was read like that */
+    uint8_t button_ms;     /**< time for which button_raw has not changed */
     uint8_t failed;        /**< HAL_SELF_TEST_* bits of the parts that have failed */
     bool was_closed;       /**< command of the safety output at the last tick */
     uint8_t parts;         /**< optional parts that the board was seen to have */

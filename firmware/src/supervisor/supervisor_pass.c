@@ -132,7 +132,7 @@ static uint32_t vcu_facts(const agv_core_t *core) {
     return bit_if(off, AGV_FACT_AUTOPILOT_OFF) | bit_if(!agv_core_step_is_late(core), AGV_FACT_VCU_ALIVE);
 }
 
-/* If THROTTLE_STATUS_TIMEOUT is a trip, AGV_FACT_MESSAGES covers a silent 050h. If it only warns, this does. */
+/* If THROTTLE_STATUS_TIMEOUT is a trip, AGV_FACT_MESSAGES covers a silent 050h. If it only warns, this function checks it. */
 static bool throttle_is_idle(const agv_core_t *core) {
     const bool unseen = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_THROTTLE_STATUS_TIMEOUT) &&
                         !agv_config_is_trip(&core->config, AGV_FAULT_THROTTLE_STATUS_TIMEOUT);
@@ -188,8 +188,8 @@ static void evaluate_faults(agv_core_t *core, uint32_t facts, uint32_t elapsed_m
 }
 
 /*
- * A press of a button, in TRIPPED and SAFE (FSM-3, HW-3). After a late step, a condition may hold only since the last frames
- * before it: no more than the usual time counts.
+ * A press of a button, in TRIPPED and SAFE (FSM-3, HW-3). When a step is late, it is not known for how long a condition has
+ * held: no more than the usual time counts.
  */
 static agv_press_result_t evaluate_press(agv_core_t *core, uint32_t facts, uint32_t elapsed_ms, uint32_t *missing) {
     if (!is_latched(core)) {
@@ -277,7 +277,7 @@ static bool follow_state(agv_core_t *core, hal_t *hal, uint32_t what, uint32_t e
     return withdrawn || ((what & AGV_ACTION_TRIP) != 0u);
 }
 
-/* A motion command outlasts no change of state, whatever passes in manual. A gear that needs standstill does not outlast it. */
+/* A change of state drops every waiting motion command, the end of standstill a waiting gear that needs standstill. */
 static bool may_wait_on(agv_core_t *core, const agv_gateway_facts_t *facts, uint32_t command, bool state_changed) {
     const uint8_t *const data = agv_transmitter_passed(&core->transmitter, command);
     if (state_changed && (command != (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND)) {

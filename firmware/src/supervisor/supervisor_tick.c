@@ -44,8 +44,8 @@ static void track_hold_frame(agv_core_t *core, uint32_t report) {
 }
 
 /*
- * SUP-7: the transmitter stalls when a frame has waited for too long, and until none waits. In TRIPPED and SAFE all frames are
- * withdrawn when one has waited for too long, which is no end of the stall.
+ * SUP-7: a stall begins when a frame has waited for too long, and ends when none waits. In TRIPPED and SAFE all frames are then
+ * withdrawn; this does not end the stall.
  */
 static bool follow_stall(agv_core_t *core, uint32_t report) {
     const bool stalled = agv_transmitter_is_stalled(&core->timers) || ((report & AGV_BUS_STALLED) != 0u);

@@ -121,9 +121,9 @@ static uint32_t limit_to_speed(const agv_gateway_facts_t *facts, uint32_t wanted
 }
 
 /*
- * The limit starts one cycle ago. After a command without an EPS in angle control the next one starts again. Once driving is
- * judged, a limit that an EPS in angle control has followed goes on: with a stuck EPS, the commands would never leave the
- * measured angle (SUP-10).
+ * The limit starts one cycle ago. When a command passes without an EPS in angle control, the limit starts again at the next
+ * one, until driving is judged and an EPS in angle control has followed it. Otherwise the commands would never leave the
+ * measured angle of an EPS that is stuck (SUP-10).
  */
 static void begin_slew(agv_gateway_t *gateway, const agv_gateway_facts_t *facts) {
     if (!gateway->steering_known) {

@@ -52,8 +52,8 @@ void agv_gateway_follow_gear(agv_gateway_t *gateway, const agv_gateway_facts_t *
                              const uint8_t data[AGV_DLC]);
 
 /**
- * Whether a command is forwarded, or may still be sent after it waited; depends on state, mode, for a gear that needs it on
- * standstill, and for the first 065h under a slew limit on a measured angle to start from.
+ * Whether a command may be forwarded now, also after it has waited. It depends on state and mode. A gear may need standstill;
+ * with a slew limit, the first 065h needs a measured angle from which the slew starts.
  */
 bool agv_gateway_passes(const agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t command,
                         const uint8_t data[AGV_DLC]);

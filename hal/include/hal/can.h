@@ -45,8 +45,9 @@ typedef struct {
 
 /**
  * Request the transmission of a frame. Never blocks. Waiting frames are sent in the order of their identifiers, the lowest
- * first. A port with a queue keeps only the newest frame of an identifier in it (TOP-1, TOP-2), which takes over the age of the
- * oldest frame that it replaces; frames that are given within 1 ms of each other all stay, because they belong together.
+ * first. A port with a queue keeps only the newest frame of an identifier in it (TOP-1, TOP-2). That frame takes over the age of
+ * the oldest frame that it replaces. There is one exception: frames of an identifier that are given within 1 ms of each other
+ * belong together, and all of them stay.
  * @param frame the core passes only classic data frames (no flags, 11-bit identifier, 8 bytes); a port refuses frames
  *              that its controller cannot send
  * @return true: accepted. The frame is sent as soon as the bus is free, unless hal_can_purge or bus-off discards it

@@ -11,7 +11,7 @@ const ARROWS = [
   ["STANDBY", "TRIPPED", "M250 54L330 98"], ["ACTIVE", "TRIPPED", "M376 54V98"], ["TRIPPED", "SAFE", "M330 122H262"],
   ["SAFE", "STANDBY", "M212 102V58"],
 ];
-const NOTES = [["vehicle healthy", 128, 27], ["engage", 294, 21], ["disengage", 294, 53], ["fault", 395, 80], ["P confirmed", 296, 115], ["reset", 192, 82]];
+const NOTES = [["healthy", 128, 27], ["engage", 294, 21], ["disengage", 294, 53], ["fault", 395, 80], ["P confirmed", 296, 115], ["reset", 192, 82]];
 
 function drawMachine() {
   const svg = draw("svg", { viewBox: "0 0 424 146", role: "img", "aria-label": "States of the supervisor" },
