@@ -2,22 +2,14 @@
 
 #include <inttypes.h>
 #include <stdio.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "agv/names.h"
 #include "live/live_output.h"
 #include "text/units.h"
+#include "ui/terminal.h"
 
-enum { EVERY_MS = 200, TENTH_MS = 100, LINE_SIZE = 200, WIDTH = 80 };
-
-/** The last column stays free: a line that fills the terminal would begin a new one. */
-static int columns(void) {
-    struct winsize size;
-    const bool known = (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) && (size.ws_col > 0);
-    const int width = (known ? (int)size.ws_col : WIDTH) - 1;
-    return (width < LINE_SIZE) ? width : LINE_SIZE - 1;
-}
+enum { EVERY_MS = 200, TENTH_MS = 100, LINE_SIZE = 200 };
 
 /** The fault of highest rank whose cause is there; NULL: none is. */
 static const char *present_fault(const session_t *session) {
@@ -38,7 +30,8 @@ static int format_status(char line[LINE_SIZE], const session_t *session, uint64_
                  (fault != NULL) ? ": " : "", (fault != NULL) ? fault : "",
                  agv_supervisor_output_closed(supervisor) ? "closed" : "open", agv_supervisor_led_code(supervisor),
                  counters->received, counters->sent, counters->warnings);
-    const int width = columns();
+    const int terminal = terminal_columns();
+    const int width = (terminal < LINE_SIZE) ? terminal : LINE_SIZE - 1;
     return (length < width) ? length : width;
 }
 

@@ -6,13 +6,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "scenario/parse/scenario_parse.h"
 #include "text/units.h"
+#include "ui/terminal.h"
 
-enum { DRAW_EVERY_MS = 100, LINE_SIZE = 320, STATUS_SIZE = 160, DEFAULT_WIDTH = 80, ALARM_BITS = 8 };
+enum { DRAW_EVERY_MS = 100, LINE_SIZE = 320, STATUS_SIZE = 160, ALARM_BITS = 8 };
 
 /* The terminal: one line up, to its begin; clear to the line's end; clear all below; keep the cursor's place. */
 #define UP "\033[1A\r"
@@ -143,22 +143,15 @@ static void show_changes(vehicle_show_t *show, uint64_t t_ms, const vehicle_view
     show_alarms(show, t_ms, before->alarms);
 }
 
-/** The last column stays free: a line that fills the terminal would begin a new one. */
-static int columns(void) {
-    struct winsize size;
-    const bool known = (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) && (size.ws_col > 0);
-    return (known ? (int)size.ws_col : (int)DEFAULT_WIDTH) - 1;
-}
-
 /** Draw the status line, and leave the cursor where it was in the line below. */
 static void draw(vehicle_show_t *show) {
     char status[STATUS_SIZE];
 
     write_status(&show->view, status);
     if (show->is_drawn) {
-        (void)printf(KEEP_CURSOR UP CLEAR_LINE "%.*s" RETURN_CURSOR, columns(), status);
+        (void)printf(KEEP_CURSOR UP CLEAR_LINE "%.*s" RETURN_CURSOR, terminal_columns(), status);
     } else {
-        (void)printf("\r" CLEAR_LINE "%.*s\n", columns(), status);
+        (void)printf("\r" CLEAR_LINE "%.*s\n", terminal_columns(), status);
     }
     (void)fflush(stdout);
     show->is_drawn = true;
