@@ -503,7 +503,7 @@ def report_compare(derived, measured):
     missing = [row["fault"] for row in measured.rows if not measured.runs[row["fault"]]]
     near = sum(time >= derived.reaction[key] / NEAR for key, time in measured.reaction.items())
     print(f"{measured.total} runs, {len(measured.runs)} faults (least {min(measured.runs.values(), default=0)} runs of one), "
-          f"{len(above)} of {len(measured.reaction)} greatest times above the derived one, {near} within {NEAR} of it")
+          f"{len(measured.reaction)} greatest times: {len(above)} above the derived time, {near} at least 1/{NEAR} of it")
     return not above and not (missing and measured.total > 10000)
 
 
