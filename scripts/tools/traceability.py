@@ -86,7 +86,11 @@ def read_tags(root, problems):
     for path in sorted([*(root / "tests").rglob("*.py"), *(root / "tests").rglob("*.bats")]):
         for tag in SCRIPT_TAG.finditer(path.read_text(encoding="utf-8")):
             yield tag["rows"], tag["python"] or tag["bats"], path
+    scenarios = {}
     for path in sorted((root / "host_sim/scenarios").glob("*/*.yaml")):
+        other = scenarios.setdefault(path.stem, path)
+        if other != path:
+            problems.append(f"{path.relative_to(root)} has the name of {other.relative_to(root)}: demo --scenario takes a name")
         tag = SCENARIO_TAG.search(path.read_text(encoding="utf-8"))
         if tag:
             yield tag["rows"], path.stem, path
