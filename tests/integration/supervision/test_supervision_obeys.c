@@ -58,12 +58,14 @@ void test_throttle_above_its_command(void) {
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, THROTTLE));
 }
 
-/* A ramp: each 25 counts that it comes down empty the budget, 24 do not. */
-/* Shows: SUP-11, THROTTLE_DEVIATION */
+/* A ramp from 250 counts, which are in range: each 25 that it comes down empty the budget, 24 do not. */
+/* Shows: SUP-5, SUP-11, P6, THROTTLE_DEVIATION */
 void test_a_throttle_on_its_way_down(void) {
     active_in_d();
     command_throttle(250);
     measure_throttle(250);
+    expect_state_after(&f, 500, AGV_STATE_ACTIVE);
+    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
     command_throttle(0);
     for (uint8_t counts = 225; counts >= 50; counts = (uint8_t)(counts - 25)) {
         fixture_run(&f, 460);
