@@ -173,26 +173,6 @@ void test_a_throttle_that_is_out_of_date_is_still_throttle_in_park(void) {
     expect_reason_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK);
 }
 
-/* An invalid throttle is not above 0, an invalid gear is not P. */
-/* Shows: SUP-5, THROTTLE_IN_PARK */
-void test_invalid_values_are_no_throttle_in_park(void) {
-    agv_fault_set_put(&f.config.trips, AGV_FAULT_THROTTLE_STATUS_INVALID, false);
-    agv_fault_set_put(&f.config.trips, AGV_FAULT_GEAR_STATUS_INVALID, false);
-    fixture_active(&f);
-    fixture_gear(&f, GEAR_P);
-    for (unsigned i = 0; i < 10; i++) {
-        set_throttle(251);
-        fixture_run(&f, 90);
-        set_throttle(0);
-        fixture_run(&f, 10);
-    }
-    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-    fixture_gear(&f, 0);
-    fixture_run(&f, 25);
-    set_throttle(10);
-    expect_nothing_after(&f, 200, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-}
-
 /* ---- AI_COMMAND_OUT_OF_RANGE ---- */
 
 typedef struct {
