@@ -78,25 +78,6 @@ void test_a_throttle_on_its_way_down(void) {
     expect_trip_at(THROTTLE, emptied_ms + 500, 7);
 }
 
-/* Without a command nothing is compared; the deadline covers that. A command from before the engagement does not
- * count. */
-/* Shows: SUP-11, SUP-3, THROTTLE_COMMAND_TIMEOUT */
-void test_without_a_command_there_is_no_deviation(void) {
-    f.config.engaged_grace_ms = 50;
-    f.config.throttle_deviation_ms = 100;
-    f.config.throttle_command_timeout_ms = 2000;
-    fixture_standby(&f);
-    fixture_run(&f, 200);
-    f.traffic[AGV_MSG_THROTTLE_COMMAND].muted = true;
-    fixture_throttle(&f, 200);
-    f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = GEAR_D;
-    fixture_gear(&f, GEAR_D);
-    fixture_mode(&f, MODE_ENGAGED);
-    expect_nothing_after(&f, 1500, THROTTLE, AGV_STATE_ACTIVE);
-    f.traffic[AGV_MSG_THROTTLE_COMMAND].muted = false;
-    expect_reason_after(&f, 250, THROTTLE);
-}
-
 /* Gateway: compared with the forwarded command. 40 % of 250 are 100 counts. */
 /* Shows: SUP-11, TOP-2, THROTTLE_DEVIATION */
 void test_the_throttle_is_compared_with_the_forwarded_command(void) {
