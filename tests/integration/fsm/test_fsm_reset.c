@@ -374,24 +374,6 @@ void test_a_dead_ai_side_of_a_gateway_does_not_hinder(void) {
 
 /* ---- After it ---- */
 
-/* Shows: FSM-2, FSM-3 */
-void test_safe_commands_that_wait_do_not_leave_after_the_reset(void) {
-    walk_to_safe(&f);
-    walk_button(&f, true);
-    fixture_run(&f, 950);
-    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
-    fixture_run(&f, 50);
-    walk_button(&f, false);
-    expect_state(&f, AGV_STATE_STANDBY);
-    fixture_forget_sent(&f);
-    const uint32_t dropped = agv_supervisor_counters(&f.supervisor)->dropped;
-    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
-    fixture_run(&f, 500);
-    expect_silence(&f);
-    expect_state(&f, AGV_STATE_STANDBY);
-    TEST_ASSERT_EQUAL_UINT32(dropped, agv_supervisor_counters(&f.supervisor)->dropped);
-}
-
 /* The throttle is at idle since the frames of a late step: of its 99 ms, 10 count. */
 /* Shows: FSM-3, TIM-4 */
 void test_of_a_late_step_10_ms_count_for_the_conditions(void) {
