@@ -1,91 +1,45 @@
 /* TRIPPED and SAFE: confirmation of the safe state, and its withdrawal. */
 #include "one_fixture.h"
+#include "spoil.h"
 #include "walk.h"
 
-static void trip_and_confirm_all_but(void (*spoil)(void), const char *what) {
+static void trip_and_confirm_all_but(const spoil_t *spoil) {
     fixture_init(&f);
-    f.what = what;
+    f.what = spoil->what;
     f.long_run = true;
     fixture_active(&f);
     fixture_mute_ai(&f, true);
     walk_trip(&f);
     fixture_vehicle_confirms(&f);
-    spoil();
+    spoil_set(&f, spoil, true);
     fixture_run(&f, 4900); /* after that a moving vehicle is a fault */
-}
-
-static void gear_d(void) {
-    fixture_gear(&f, GEAR_D);
-}
-
-static void gear_n(void) {
-    fixture_gear(&f, GEAR_N);
-}
-
-static void gear_r(void) {
-    fixture_gear(&f, GEAR_R);
-}
-
-static void gear_invalid(void) {
-    fixture_gear(&f, 9); /* P and D at once */
-}
-
-static void no_gear(void) {
-    f.traffic[AGV_MSG_GEAR_STATUS].muted = true;
-}
-
-static void still_engaged(void) {
-    fixture_mode(&f, MODE_ENGAGED);
-}
-
-static void vcu_frozen(void) {
-    f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = true;
-}
-
-static void vcu_silent(void) {
-    fixture_mute_vcu(&f, true);
 }
 
 /* Shows: FSM-4 */
 void test_without_each_part_of_the_confirmation_it_stays_tripped(void) {
-    static const struct {
-        const char *what;
-        void (*spoil)(void);
-    } ROWS[] = {{"D", gear_d},
-                {"N", gear_n},
-                {"R", gear_r},
-                {"no valid gear", gear_invalid},
-                {"no 0A3h", no_gear},
-                {"engaged", still_engaged},
-                {"VCU counter stands still", vcu_frozen},
-                {"VCU silent", vcu_silent}};
+    static const spoil_t ROWS[] = {{"D", M_GEAR_STATUS, BYTE, 1, .value = GEAR_D},
+                                   {"N", M_GEAR_STATUS, BYTE, 1, .value = GEAR_N},
+                                   {"R", M_GEAR_STATUS, BYTE, 1, .value = GEAR_R},
+                                   {"P and D at once", M_GEAR_STATUS, BYTE, 1, .value = 9},
+                                   {"no 0A3h", M_GEAR_STATUS, .how = SILENT},
+                                   {"engaged", M_VEHICLE, BYTE, 7, .value = MODE_ENGAGED},
+                                   {"VCU counter stands still", M_VEHICLE, .how = FROZEN},
+                                   {"VCU silent", .by = fixture_mute_vcu}};
     for (unsigned i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
-        trip_and_confirm_all_but(ROWS[i].spoil, ROWS[i].what);
+        trip_and_confirm_all_but(&ROWS[i]);
         expect_tripped(&f, AGV_FAULT_S_DRIVER_ALARM);
         expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
         expect_output(&f, false);
     }
 }
 
-static void nothing(void) {
-}
-
-static void in_neither_mode(void) {
-    fixture_mode(&f, MODE_NEITHER);
-}
-
-static void eps_silent(void) {
-    fixture_mute_eps(&f, true);
-}
-
 /* Shows: FSM-4 */
 void test_conditions_that_the_confirmation_does_not_need(void) {
-    static const struct {
-        const char *what;
-        void (*spoil)(void);
-    } ROWS[] = {{"nothing", nothing}, {"neither mode", in_neither_mode}, {"EPS silent", eps_silent}};
+    static const spoil_t ROWS[] = {{.what = "nothing"},
+                                   {"neither mode", M_VEHICLE, BYTE, 7, .value = MODE_NEITHER},
+                                   {"EPS silent", .by = fixture_mute_eps}};
     for (unsigned i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
-        trip_and_confirm_all_but(ROWS[i].spoil, ROWS[i].what);
+        trip_and_confirm_all_but(&ROWS[i]);
         expect_state(&f, AGV_STATE_SAFE);
         expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
         expect_output(&f, true);

@@ -1,5 +1,6 @@
 /* Steering hold: the angle of 065h in TRIPPED and SAFE, and when 065h is not sent. */
 #include "one_fixture.h"
+#include "spoil.h"
 #include "walk.h"
 
 /* 40 a second on a 25 ms cycle; all with this raw angle. */
@@ -64,60 +65,21 @@ void test_an_invalid_angle_drops_the_held_angle(void) {
 
 /* ---- Only with a healthy EPS ---- */
 
-static void eps_frozen(bool spoilt) {
-    f.traffic[AGV_MSG_STEERING_STATUS].frozen = spoilt;
-}
-
-static void eps_silent(bool spoilt) {
-    f.traffic[AGV_MSG_STEERING_STATUS].muted = spoilt;
-}
-
-static void no_eps_status(bool spoilt) {
-    f.traffic[AGV_MSG_EPS_STATUS].muted = spoilt;
-}
-
-static void vcu_says_hardware(bool spoilt) {
-    walk_alarm(&f, spoilt ? ALARM_EPS_HARDWARE : ALARM_NONE);
-}
-
-static void vcu_says_can(bool spoilt) {
-    walk_alarm(&f, spoilt ? 0x20 : ALARM_NONE);
-}
-
-enum { MODE = 3, FAULTS = 7 }; /* bytes of 167h */
-
-static void report_eps(unsigned byte, uint8_t value) {
-    f.traffic[AGV_MSG_EPS_STATUS].data[byte] = value;
-}
-
-static const struct {
-    const char *what;
-    void (*spoil)(bool spoilt);
-    uint8_t byte; /* without a function: of 167h */
-    uint8_t value;
-} UNFIT[] = {
-    {"EPS frozen", eps_frozen, 0, 0},
-    {"no 067h", eps_silent, 0, 0},
-    {"no 167h", no_eps_status, 0, 0},
-    {"hardware fault reported by the VCU", vcu_says_hardware, 0, 0},
-    {"CAN fault reported by the VCU", vcu_says_can, 0, 0},
-    {"over current", NULL, FAULTS, 0x08},
-    {"position encoder", NULL, FAULTS, 0x80},
-    {"under voltage", NULL, FAULTS, 0x01},
-    {"steering assist", NULL, MODE, 0x00},
-    {"speed control", NULL, MODE, 0x02},
-    {"torque control", NULL, MODE, 0x03},
-    {"EPS off", NULL, MODE, 0xFF},
-    {"unknown mode", NULL, MODE, 0x11},
+static const spoil_t UNFIT[] = {
+    {"EPS frozen", M_STEERING_STATUS, .how = FROZEN},
+    {"no 067h", M_STEERING_STATUS, .how = SILENT},
+    {"no 167h", M_EPS_STATUS, .how = SILENT},
+    {"hardware fault reported by the VCU", M_VEHICLE, BYTE, 5, .value = ALARM_EPS_HARDWARE},
+    {"CAN fault reported by the VCU", M_VEHICLE, BYTE, 5, .value = 0x20},
+    {"over current", M_EPS_STATUS, BYTE, 8, .value = 0x08},
+    {"position encoder", M_EPS_STATUS, BYTE, 8, .value = 0x80},
+    {"under voltage", M_EPS_STATUS, BYTE, 8, .value = 0x01},
+    {"steering assist", M_EPS_STATUS, BYTE, 4, .value = 0x00},
+    {"speed control", M_EPS_STATUS, BYTE, 4, .value = 0x02},
+    {"torque control", M_EPS_STATUS, BYTE, 4, .value = 0x03},
+    {"EPS off", M_EPS_STATUS, BYTE, 4, .value = 0xFF},
+    {"unknown mode", M_EPS_STATUS, BYTE, 4, .value = 0x11},
 };
-
-static void spoil(unsigned i, bool spoilt) {
-    if (UNFIT[i].spoil != NULL) {
-        UNFIT[i].spoil(spoilt);
-    } else {
-        report_eps(UNFIT[i].byte, spoilt ? UNFIT[i].value : (UNFIT[i].byte == MODE ? 1 : 0));
-    }
-}
 
 /* Meanwhile the steering may move: the angle of the trip would turn it back. */
 /* Shows: FSM-10 */
@@ -127,11 +89,11 @@ void test_the_angle_is_held_only_while_the_eps_is_healthy(void) {
         f.what = UNFIT[i].what;
         f.long_run = true;
         trip_at(9123);
-        spoil(i, true);
+        spoil_set(&f, &UNFIT[i], true);
         fixture_run(&f, 100);
         expect_not_held_for_a_second();
         fixture_angle(&f, 8700);
-        spoil(i, false);
+        spoil_set(&f, &UNFIT[i], false);
         fixture_run(&f, 100);
         expect_held_for_a_second(8700); /* not the angle of the trip */
     }
@@ -145,7 +107,7 @@ void test_it_ends_in_the_frame_that_reports_it(void) {
     fixture_frame(&f, AGV_MSG_STEERING_COMMAND, other); /* overridden, because 065h is sent */
     TEST_ASSERT_EQUAL_UINT32(f.call, f.sent[f.sent_count - 1].call);
     fixture_run(&f, 20);
-    report_eps(MODE, 0xFF);
+    f.traffic[AGV_MSG_EPS_STATUS].data[3] = 0xFF;
     fixture_send_now(&f, AGV_MSG_EPS_STATUS);
     fixture_forget_sent(&f);
     fixture_frame(&f, AGV_MSG_STEERING_COMMAND, other);
@@ -399,11 +361,11 @@ void test_after_a_restart_nothing_is_held_before_the_eps_is_alive(void) {
     fixture_command_angle(&f, 9100);
     fixture_active(&f);
     fixture_mute_ai(&f, true);
-    eps_frozen(true);
+    f.traffic[AGV_MSG_STEERING_STATUS].frozen = true;
     fixture_restart(&f, HAL_RESET_WATCHDOG);
     expect_fault_after(&f, 45, AGV_FAULT_EPS_HEARTBEAT_STUCK, false); /* a slot of 065h is among them */
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
-    eps_frozen(false);
+    f.traffic[AGV_MSG_STEERING_STATUS].frozen = false;
     fixture_run(&f, 100);
     expect_held_for_a_second(9100);
 }

@@ -1,5 +1,6 @@
 /* The reset: its conditions, interruptions, and the report of a refused press. */
 #include "one_fixture.h"
+#include "spoil.h"
 #include "walk.h"
 
 /* Press now, release after this many milliseconds. */
@@ -31,83 +32,37 @@ void test_a_press_of_1_s_with_all_conditions_resets_at_its_release(void) {
 
 /* ---- Each condition missing in turn ---- */
 
-static void moving(bool spoilt) {
-    fixture_wheels(&f, spoilt ? 50 : 0, 0);
-}
-
-static void moving_backwards(bool spoilt) {
-    fixture_wheels(&f, 0, spoilt ? -50 : 0);
-}
-
-static void not_manual(bool spoilt) {
-    fixture_mode(&f, spoilt ? MODE_NEITHER : MODE_MANUAL);
-}
-
-static void eps_frozen(bool spoilt) {
-    f.traffic[AGV_MSG_STEERING_STATUS].frozen = spoilt;
-}
-
-static void eps_fault(bool spoilt) {
-    f.traffic[AGV_MSG_EPS_STATUS].data[7] = spoilt ? 0x08 : 0;
-}
-
-static void alarm(bool spoilt) {
-    walk_alarm(&f, spoilt ? ALARM_S_DRIVER : ALARM_NONE);
-}
-
-static void no_throttle_status(bool spoilt) {
-    f.traffic[AGV_MSG_THROTTLE_STATUS].muted = spoilt;
-}
-
-static void throttle(bool spoilt) {
-    fixture_throttle(&f, spoilt ? 3 : 2);
-}
-
-static void invalid_throttle(bool spoilt) {
-    fixture_throttle(&f, spoilt ? 251 : 2);
-}
-
-static void vcu_says_moving(bool spoilt) {
-    fixture_speed(&f, spoilt ? 181 : 180);
-}
-
-static void not_in_p(bool spoilt) {
-    fixture_gear(&f, spoilt ? GEAR_N : GEAR_P);
-}
-
-static void engaged(bool spoilt) {
-    fixture_mode(&f, spoilt ? MODE_ENGAGED : MODE_MANUAL);
-    fixture_mute_ai(&f, !spoilt);
-}
-
 typedef struct {
-    const char *what;
-    void (*spoil)(bool spoilt);
+    spoil_t spoil;
     agv_state_t state;
     uint16_t missing;
 } condition_t;
 
 static const condition_t CONDITIONS[] = {
-    {"moving", moving, AGV_STATE_SAFE, AGV_MISSING_STANDSTILL},
-    {"moving backwards", moving_backwards, AGV_STATE_SAFE, AGV_MISSING_STANDSTILL},
-    {"not manual", not_manual, AGV_STATE_SAFE, AGV_MISSING_MANUAL},
-    {"EPS frozen", eps_frozen, AGV_STATE_SAFE, AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_TRIP_CAUSE},
-    {"EPS fault", eps_fault, AGV_STATE_SAFE, AGV_MISSING_TRIP_CAUSE},
-    {"alarm", alarm, AGV_STATE_SAFE, AGV_MISSING_TRIP_CAUSE},
-    {"no 050h", no_throttle_status, AGV_STATE_SAFE, AGV_MISSING_TRIP_CAUSE | AGV_MISSING_MESSAGES},
-    {"not in P", not_in_p, AGV_STATE_TRIPPED, AGV_MISSING_STATE | AGV_MISSING_TRIP_CAUSE},
-    {"throttle", throttle, AGV_STATE_SAFE, AGV_MISSING_THROTTLE},
-    {"throttle invalid", invalid_throttle, AGV_STATE_SAFE, AGV_MISSING_THROTTLE},
-    {"moving, by the VCU's speed", vcu_says_moving, AGV_STATE_SAFE, AGV_MISSING_STANDSTILL},
-    {"engaged", engaged, AGV_STATE_TRIPPED, AGV_MISSING_STATE | AGV_MISSING_TRIP_CAUSE | AGV_MISSING_MANUAL},
+    {{"moving", M_WHEELS, BYTE, 1, .value = 50}, AGV_STATE_SAFE, AGV_MISSING_STANDSTILL},
+    {{"moving backwards", .by = spoil_wheel}, AGV_STATE_SAFE, AGV_MISSING_STANDSTILL},
+    {{"not manual", M_VEHICLE, BYTE, 7, .value = MODE_NEITHER}, AGV_STATE_SAFE, AGV_MISSING_MANUAL},
+    {{"EPS frozen", M_STEERING_STATUS, .how = FROZEN},
+     AGV_STATE_SAFE,
+     AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_TRIP_CAUSE},
+    {{"EPS fault", M_EPS_STATUS, BYTE, 8, .value = 0x08}, AGV_STATE_SAFE, AGV_MISSING_TRIP_CAUSE},
+    {{"alarm", M_VEHICLE, BYTE, 5, .value = ALARM_S_DRIVER}, AGV_STATE_SAFE, AGV_MISSING_TRIP_CAUSE},
+    {{"no 050h", M_THROTTLE_STATUS, .how = SILENT}, AGV_STATE_SAFE, AGV_MISSING_TRIP_CAUSE | AGV_MISSING_MESSAGES},
+    {{"not in P", M_GEAR_STATUS, BYTE, 1, .value = GEAR_N},
+     AGV_STATE_TRIPPED,
+     AGV_MISSING_STATE | AGV_MISSING_TRIP_CAUSE},
+    {{"throttle", M_THROTTLE_STATUS, BYTE, 1, .value = 3}, AGV_STATE_SAFE, AGV_MISSING_THROTTLE},
+    {{"throttle invalid", M_THROTTLE_STATUS, BYTE, 1, .value = 251}, AGV_STATE_SAFE, AGV_MISSING_THROTTLE},
+    {{"moving, by the VCU's speed", .by = spoil_speed}, AGV_STATE_SAFE, AGV_MISSING_STANDSTILL},
+    {{"engaged", .by = spoil_mode}, AGV_STATE_TRIPPED, AGV_MISSING_STATE | AGV_MISSING_TRIP_CAUSE | AGV_MISSING_MANUAL},
 };
 
 static void begin(const condition_t *condition) {
     fixture_init(&f);
-    f.what = condition->what;
+    f.what = condition->spoil.what;
     f.long_run = true;
     walk_to_safe(&f);
-    condition->spoil(true);
+    spoil_set(&f, &condition->spoil, true);
     expect_state_after(&f, 700, condition->state); /* a deadline has expired, SAFE_STATE_UNCONFIRMED has been raised */
 }
 
@@ -373,24 +328,6 @@ void test_a_dead_ai_side_of_a_gateway_does_not_hinder(void) {
 }
 
 /* ---- After it ---- */
-
-/* Shows: FSM-2, FSM-3 */
-void test_safe_commands_that_wait_do_not_leave_after_the_reset(void) {
-    walk_to_safe(&f);
-    walk_button(&f, true);
-    fixture_run(&f, 950);
-    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
-    fixture_run(&f, 50);
-    walk_button(&f, false);
-    expect_state(&f, AGV_STATE_STANDBY);
-    fixture_forget_sent(&f);
-    const uint32_t dropped = agv_supervisor_counters(&f.supervisor)->dropped;
-    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
-    fixture_run(&f, 500);
-    expect_silence(&f);
-    expect_state(&f, AGV_STATE_STANDBY);
-    TEST_ASSERT_EQUAL_UINT32(dropped, agv_supervisor_counters(&f.supervisor)->dropped);
-}
 
 /* The throttle is at idle since the frames of a late step: of its 99 ms, 10 count. */
 /* Shows: FSM-3, TIM-4 */

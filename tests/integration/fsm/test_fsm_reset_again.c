@@ -14,12 +14,16 @@ static void expect_reset_in_a_frame(agv_fault_t forgotten) {
     expect_fault(&f, forgotten, false);
 }
 
-/* Shows: FSM-3, SUP-8, AI_HEARTBEAT_LOST, AI_HEARTBEAT_STUCK */
+/* The reset forgets that it was alive, but not its silence: an engagement before the next tick finds it lost. */
+/* Shows: FSM-3, FSM-11, SUP-8, AI_HEARTBEAT_LOST, AI_HEARTBEAT_STUCK */
 void test_a_reset_forgets_the_ai_computer_at_once(void) {
     fixture_active(&f);
     fixture_mute_ai(&f, true);
     fixture_run(&f, 500);
     expect_reset_in_a_frame(AGV_FAULT_AI_HEARTBEAT_LOST);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_tripped(&f, AGV_FAULT_AI_HEARTBEAT_LOST);
     fixture_init(&f);
     fixture_active(&f);
     f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].frozen = true;
@@ -63,24 +67,4 @@ void test_the_event_of_the_reset_names_no_fault(void) {
     TEST_ASSERT_EQUAL_UINT32(1, fixture_events(&f, AGV_EVENT_STATE, AGV_STATE_SAFE, ANY, &event));
     TEST_ASSERT_EQUAL_HEX8(AGV_STATE_STANDBY, event.b);
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, event.c);
-}
-
-/* The operator engages the autopilot before the next tick. The reset has forgotten that the AI was alive, but not its
- * silence. */
-/* Shows: FSM-3, FSM-11, SUP-8, AI_HEARTBEAT_LOST */
-void test_an_engagement_in_the_frame_after_a_reset_finds_the_ai_computer_lost(void) {
-    fixture_active(&f);
-    fixture_mute_ai(&f, true);
-    fixture_run(&f, 500);
-    fixture_vehicle_confirms(&f);
-    fixture_run(&f, 300);
-    walk_button(&f, true);
-    fixture_run(&f, 999);
-    fixture_run_without_ticks(&f, 1);
-    walk_button(&f, false);
-    expect_state(&f, AGV_STATE_STANDBY);
-    fixture_mode(&f, MODE_ENGAGED);
-    expect_fault(&f, AGV_FAULT_AI_HEARTBEAT_LOST, false);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    expect_tripped(&f, AGV_FAULT_AI_HEARTBEAT_LOST);
 }

@@ -378,25 +378,6 @@ void test_the_vcus_ai_alarm_at_the_engagement(void) {
     expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
 }
 
-/* Alive with the alarm clear, then off for a second of manual driving, with the alarm, and on again. */
-static void pause_ai_in_manual(void) {
-    fixture_standby(&f);
-    fixture_run(&f, 500);
-    fixture_mute_ai(&f, true);
-    set_alarm(true);
-    fixture_run(&f, 1000);
-    fixture_mute_ai(&f, false);
-}
-
-/* Armed once is enough: an alarm that is set since the AI computer was off in manual counts at the engagement. */
-/* Shows: SUP-8, VCU_AI_CAN_LOST */
-void test_the_vcus_ai_alarm_that_stands_since_a_pause_counts_when_engaged(void) {
-    pause_ai_in_manual();
-    expect_nothing_after(&f, 500, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
-    walk_engage(&f);
-    expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
-}
-
 /* A reset forgets only that the AI computer was alive: the alarm stays armed, also when the very next 363h reports autopilot. */
 /* Shows: SUP-8, FSM-11, VCU_AI_CAN_LOST */
 void test_the_vcus_ai_alarm_stays_armed_after_a_reset(void) {

@@ -95,31 +95,6 @@ void test_each_value_that_counts_while_engaged(void) {
     }
 }
 
-static void command_throttle(uint8_t counts) {
-    f.traffic[AGV_MSG_THROTTLE_COMMAND].data[0] = counts;
-}
-
-static void command_gear(uint8_t gear) {
-    f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = gear;
-}
-
-/* The largest and smallest values that are valid. */
-/* Shows: SUP-5, P2, P5, P6 */
-void test_values_at_the_edge_are_valid(void) {
-    static const uint8_t GEARS[] = {GEAR_P, GEAR_R, GEAR_N, GEAR_D};
-    fixture_active(&f);
-    for (unsigned i = 0; i < 8; i++) {
-        fixture_gear(&f, GEARS[i % 4]);
-        f.traffic[AGV_MSG_THROTTLE_STATUS].data[0] = GEARS[i % 4] == GEAR_P ? 0 : 250;
-        fixture_angle(&f, i % 2 == 0 ? 18000 : 0);
-        fixture_command_angle(&f, i % 2 == 0 ? 18000 : 0);
-        command_throttle(f.traffic[AGV_MSG_THROTTLE_STATUS].data[0]);
-        command_gear(GEARS[i % 4]);
-        expect_state_after(&f, 200, AGV_STATE_ACTIVE);
-    }
-    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
-}
-
 /* ---- THROTTLE_IN_PARK ---- */
 
 static void set_throttle(uint8_t counts) {
@@ -198,26 +173,6 @@ void test_a_throttle_that_is_out_of_date_is_still_throttle_in_park(void) {
     expect_reason_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK);
 }
 
-/* An invalid throttle is not above 0, an invalid gear is not P. */
-/* Shows: SUP-5, THROTTLE_IN_PARK */
-void test_invalid_values_are_no_throttle_in_park(void) {
-    agv_fault_set_put(&f.config.trips, AGV_FAULT_THROTTLE_STATUS_INVALID, false);
-    agv_fault_set_put(&f.config.trips, AGV_FAULT_GEAR_STATUS_INVALID, false);
-    fixture_active(&f);
-    fixture_gear(&f, GEAR_P);
-    for (unsigned i = 0; i < 10; i++) {
-        set_throttle(251);
-        fixture_run(&f, 90);
-        set_throttle(0);
-        fixture_run(&f, 10);
-    }
-    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-    fixture_gear(&f, 0);
-    fixture_run(&f, 25);
-    set_throttle(10);
-    expect_nothing_after(&f, 200, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-}
-
 /* ---- AI_COMMAND_OUT_OF_RANGE ---- */
 
 typedef struct {
@@ -257,28 +212,6 @@ void test_commands_out_of_range(void) {
         fixture_init(&f);
         check_out_of_range(&OUT_OF_RANGE[i]);
     }
-}
-
-/* The limits of the ranges are valid; reserved bytes are ignored. */
-/* Shows: SUP-5, P14, AI_COMMAND_OUT_OF_RANGE */
-void test_commands_in_range(void) {
-    static const command_t IN_RANGE[] = {
-        {AGV_MSG_GEAR_COMMAND, {1, 0xFF, 0xFF}},
-        {AGV_MSG_GEAR_COMMAND, {2}},
-        {AGV_MSG_GEAR_COMMAND, {4}},
-        {AGV_MSG_GEAR_COMMAND, {8}},
-        {AGV_MSG_THROTTLE_COMMAND, {0, 0xFF}},
-        {AGV_MSG_THROTTLE_COMMAND, {250}},
-        {AGV_MSG_STEERING_COMMAND, {0, 0, 0xFF}},
-        {AGV_MSG_STEERING_COMMAND, {0x50, 0x46}}, /* 18000 */
-    };
-    fixture_active(&f);
-    for (unsigned i = 0; i < sizeof IN_RANGE / sizeof IN_RANGE[0]; i++) {
-        fixture_frame(&f, IN_RANGE[i].message, IN_RANGE[i].data);
-        expect_state_after(&f, 60, AGV_STATE_ACTIVE);
-    }
-    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
-    TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->dropped);
 }
 
 /* ---- Scores and the engagement ---- */

@@ -32,30 +32,11 @@ void test_in_standby_all_four_pass_if_so_chosen_and_the_throttle_as_0(void) {
     expect_pass(0x065, ANGLE, ANGLE_PACKED);
 }
 
-static void expect_no_command_passes(agv_state_t state) {
-    expect_state(&f, state);
-    expect_dropped(0x43F, SIGNALS);
-    expect_dropped(0x168, DRIVE);
-    expect_dropped(0x075, THROTTLE);
-    expect_dropped(0x065, ANGLE);
-}
-
+/* INIT and SAFE are in test_gateway. */
 /* Shows: TOP-2, FSM-6 */
-void test_in_init_tripped_and_safe_no_command_passes(void) {
-    for (uint16_t choice = AGV_IN_MANUAL_HEARTBEAT; choice <= AGV_IN_MANUAL_ALL; choice++) {
-        setUp();
-        f.config.gateway_in_manual = choice;
-        fixture_start(&f);
-        expect_no_command_passes(AGV_STATE_INIT);
-        setUp();
-        f.config.gateway_in_manual = choice;
-        walk_to_tripped(&f);
-        expect_no_command_passes(AGV_STATE_TRIPPED);
-        setUp();
-        f.config.gateway_in_manual = choice;
-        walk_to_safe(&f);
-        expect_no_command_passes(AGV_STATE_SAFE);
-    }
+void test_in_tripped_a_command_is_dropped_and_counted(void) {
+    walk_to_tripped(&f);
+    expect_dropped(0x168, DRIVE);
 }
 
 static void expect_invalid_commands_are_dropped(void) {

@@ -134,30 +134,6 @@ static void active_without(const too_soon_t *row) {
     fixture_run(&f, 60);
 }
 
-/* The first passes. The second and the third come too soon: the newest is sent once, at the end of the half cycle. Half of
- * 25 ms is 12.5, so 13 is the first whole ms of the other half. */
-/* Shows: TOP-2 */
-void test_of_commands_that_come_too_soon_the_newest_goes(void) {
-    static const uint8_t third[8] = {0x2A, 0x23};
-    const too_soon_t *const row = &TOO_SOON[3];
-    active_without(row);
-    const uint32_t before = dropped();
-    expect_pass(row->id, row->first, row->first);
-    fixture_run(&f, 1);
-    from_ai(row->id, row->second);
-    expect_silence(&f);
-    fixture_run(&f, 11);
-    from_ai(row->id, third);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, row->id));
-    TEST_ASSERT_EQUAL_UINT32(before + 1, dropped());
-    fixture_run(&f, 1);
-    expect_sent_once(row->id, third);
-    expect_count_after(&f, 12, row->id, 1);
-    from_ai(row->id, row->first); /* that one counted as a pass */
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, row->id));
-    TEST_ASSERT_EQUAL_UINT32(before + 1, dropped());
-}
-
 /* Waiting commands are dropped at a trip and never sent. */
 /* Shows: TOP-2, FSM-2, FSM-6 */
 void test_commands_that_came_too_soon_are_dropped_at_a_trip(void) {

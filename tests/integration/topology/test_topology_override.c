@@ -299,29 +299,6 @@ void test_a_steering_command_is_not_overridden_while_none_is_sent(void) {
     expect_silence(&f);
 }
 
-/* ---- The schedule after an override ---- */
-
-static void expect_next_after(uint32_t id, uint32_t answered_ms, uint32_t half_ms, uint32_t cycle_ms) {
-    fixture_run(&f, 400);
-    TEST_ASSERT_EQUAL_UINT32(answered_ms, fixture_nth_sent(&f, id, 0)->time_ms);
-    TEST_ASSERT_EQUAL_UINT32(half_ms, fixture_nth_sent(&f, id, 1)->time_ms - answered_ms);
-    TEST_ASSERT_EQUAL_UINT32(half_ms + cycle_ms, fixture_nth_sent(&f, id, 2)->time_ms - answered_ms);
-    TEST_ASSERT_EQUAL_UINT32(half_ms + 2 * cycle_ms, fixture_nth_sent(&f, id, 3)->time_ms - answered_ms);
-}
-
-/* 25 ms have no half in whole milliseconds: 12. */
-/* Shows: TOP-1, TIM-1 */
-void test_after_an_override_the_next_periodic_frame_is_due_half_a_cycle_later(void) {
-    static const uint8_t angle[8] = {0x00, 0x10};
-    tripped();
-    foreign_gear(GEAR_D);
-    expect_next_after(0x168, f.now_ms, 50, 100);
-    fixture_init(&f);
-    tripped();
-    foreign(0x065, 8, angle);
-    expect_next_after(0x065, f.now_ms, 12, 25);
-}
-
 /* ---- Not more often than every 5 ms ---- */
 
 /* A sender of one frame a millisecond: an override every 5 ms, and after its last frame. */

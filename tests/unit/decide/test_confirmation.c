@@ -35,12 +35,17 @@ static void expect(bool unconfirmed) {
     TEST_ASSERT_EQUAL(unconfirmed, confirmation.unconfirmed);
 }
 
+/* The fault must come exactly this many ms from now, in which the ticks see this. */
+static void expect_after(uint32_t ms, bool autopilot_off, bool in_park) {
+    run(ms - 1, autopilot_off, in_park);
+    expect(false);
+    run(1, autopilot_off, in_park);
+    expect(true);
+}
+
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
 void test_autopilot_off_may_be_missing_for_500_ms(void) {
-    run(499, false, true);
-    expect(false);
-    run(1, false, true);
-    expect(true);
+    expect_after(500, false, true);
     run(100, false, true);
     expect(true);
     step(0, true, true); /* a frame confirms */
@@ -77,10 +82,7 @@ void test_a_frame_between_two_ticks_does_not_count(void) {
     step(0, false, true);
     begin(false, true);
     TEST_ASSERT_EQUAL_UINT16(0, confirmation.off.sum_ms);
-    run(499, false, true);
-    expect(false);
-    run(1, false, true);
-    expect(true);
+    expect_after(500, false, true);
 }
 
 /* From the first P on, however often it is sent. */
@@ -91,10 +93,7 @@ void test_p_may_be_missing_for_500_ms_since_the_first_p_was_sent(void) {
     agv_confirmation_park_sent(&confirmation);
     run(300, true, false);
     agv_confirmation_park_sent(&confirmation);
-    run(199, true, false);
-    expect(false);
-    run(1, true, false);
-    expect(true);
+    expect_after(200, true, false);
 }
 
 /* A VCU that refuses P above a speed needs a longer time for P. */
@@ -103,18 +102,12 @@ void test_the_two_limits_are_two_settings(void) {
     config.confirm_timeout_ms = 100;
     config.park_confirm_timeout_ms = 10000;
     agv_confirmation_park_sent(&confirmation);
-    run(9999, true, false);
-    expect(false);
-    run(1, true, false);
-    expect(true);
+    expect_after(10000, true, false);
     setUp();
     config.confirm_timeout_ms = 100;
     config.park_confirm_timeout_ms = 10000;
     agv_confirmation_park_sent(&confirmation);
-    run(99, false, false);
-    expect(false);
-    run(1, false, false);
-    expect(true);
+    expect_after(100, false, false);
 }
 
 /* Each sum counts its own time: 300 ms without both are 300 ms in each. */
@@ -125,10 +118,7 @@ void test_the_two_sums_are_not_added_up(void) {
     begin(false, true); /* 301 ms in each */
     run(197, false, true);
     begin(true, false); /* 499 without autopilot off */
-    run(198, true, false);
-    expect(false);
-    run(1, true, false);
-    expect(true);
+    expect_after(199, true, false);
 }
 
 /* The sums keep interrupted times. */
@@ -207,10 +197,7 @@ void test_a_full_sum_of_the_one_raises_nothing_for_the_other(void) {
     run(1, true, true);
     expect(false);
     begin(true, false);
-    run(499, true, false);
-    expect(false);
-    run(1, true, false);
-    expect(true);
+    expect_after(500, true, false);
 }
 
 /* The ms in which the confirmation comes counts, but raises nothing by itself. */

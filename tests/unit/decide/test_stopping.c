@@ -36,6 +36,14 @@ static void expect(bool not_stopping, bool moving) {
     TEST_ASSERT_EQUAL(moving, stopping.moving);
 }
 
+/* The first fault must come exactly this many ms from now. */
+static void expect_after(uint32_t ms, bool not_stopping, bool moving) {
+    run(ms - 1);
+    expect(false, false);
+    run(1);
+    expect(not_stopping, moving);
+}
+
 /* At 2 m/s, just before the wrap. */
 void setUp(void) {
     agv_config_defaults(&config);
@@ -51,10 +59,7 @@ void setUp(void) {
 void test_5_s_without_standing_wheels(void) {
     run(1000);
     trip();
-    run(4999);
-    expect(false, false);
-    run(1);
-    expect(true, false);
+    expect_after(5000, true, false);
     wheels(0, 0); /* the fault lasts until the wheels have stood for 100 ms */
     run(99);
     expect(true, false);
@@ -84,10 +89,7 @@ void test_stale_wheel_speeds_are_no_standstill(void) {
     wheels_fresh = false;
     wheels(0, 0);
     trip();
-    run(4999);
-    expect(false, false);
-    run(1);
-    expect(true, false);
+    expect_after(5000, true, false);
 }
 
 /* Shows: FSM-12 */
@@ -108,10 +110,7 @@ void test_wheels_that_turn_from_the_trip_on(void) {
     trip();
     wheels(2000, 2000);
     begin();
-    run(199);
-    expect(false, false);
-    run(1);
-    expect(false, true);
+    expect_after(200, false, true);
 }
 
 /* A speed that counts as standstill by its setting does not count as moving. */
@@ -130,10 +129,7 @@ void test_wheels_that_are_slow_by_a_setting_stand(void) {
 void test_the_time_to_stop_is_a_setting(void) {
     config.stop_timeout_ms = 30000;
     trip();
-    run(29999);
-    expect(false, false);
-    run(1);
-    expect(true, false);
+    expect_after(30000, true, false);
 }
 
 static void trip_and_stop(void) {
@@ -152,10 +148,7 @@ void test_a_wheel_that_turns_for_200_ms(int left_mm_s, int right_mm_s) {
     trip_and_stop();
     wheels(left_mm_s, right_mm_s);
     begin();
-    run(199);
-    expect(false, false);
-    run(1);
-    expect(false, true);
+    expect_after(200, false, true);
     wheels(99, 99); /* slower, but they do not stand */
     run(1000);
     expect(false, true);
@@ -191,10 +184,7 @@ void test_a_slow_reading_now_and_then_hides_no_motion(void) {
     run(10);
     wheels(5000, 5000);
     begin();
-    run(24);
-    expect(false, false);
-    run(1);
-    expect(false, true);
+    expect_after(25, false, true);
 }
 
 /* The way to the stop is no motion after it. */
@@ -206,10 +196,7 @@ void test_motion_counts_from_the_first_stop_on(void) {
     run(100);
     wheels(2000, 2000);
     begin();
-    run(199);
-    expect(false, false);
-    run(1);
-    expect(false, true);
+    expect_after(200, false, true);
 }
 
 /* 110 ms in 300 read 0: the wheels seem to stand for a moment. */
@@ -251,10 +238,7 @@ void test_stale_wheel_speeds_are_not_moving(void) {
     expect(false, false);
     wheels_fresh = true;
     begin();
-    run(199);
-    expect(false, false);
-    run(1);
-    expect(false, true);
+    expect_after(200, false, true);
 }
 
 /* Before the first standstill the wheels may turn, because the vehicle is stopping. */

@@ -37,46 +37,26 @@ static void expect_pattern(int8_t code, bool shadow, const bool *pattern, uint32
     }
 }
 
-/* Shows: P19, LED-1 */
-TEST_RANGE([ 1, 17, 1 ])
-void test_a_code_is_that_many_flashes_and_a_pause(int code) {
+/* Each code, and in shadow mode too. */
+/* Shows: P19, LED-1, TOP-4 */
+TEST_RANGE([ 1, 17, 1 ], [ 0, 1, 1 ])
+void test_a_code_is_that_many_flashes_and_a_pause(int code, int shadow) {
     static bool pattern[10000];
     const uint32_t length = pattern_of(code, pattern);
-    expect_pattern((int8_t)code, false, pattern, length);
+    expect_pattern((int8_t)code, shadow != 0, pattern, length);
 }
 
-/* Shows: LED-1 */
-void test_healthy_is_a_second_on_and_a_second_off(void) {
+/* Healthy, healthy in shadow mode, a fault without a code. */
+/* Shows: LED-1, TOP-4 */
+TEST_CASE(AGV_LED_HEALTHY, false, 1000, 2000)
+TEST_CASE(AGV_LED_HEALTHY, true, 100, 2000)
+TEST_CASE(AGV_LED_BLINK, false, 100, 200)
+void test_without_a_code_it_is_on_and_off(int code, bool shadow, uint32_t lit_ms, uint32_t period_ms) {
     static bool pattern[2000];
-    for (uint32_t ms = 0; ms < 2000; ms++) {
-        pattern[ms] = ms < 1000;
+    for (uint32_t ms = 0; ms < period_ms; ms++) {
+        pattern[ms] = ms < lit_ms;
     }
-    expect_pattern(AGV_LED_HEALTHY, false, pattern, 2000);
-}
-
-/* Shows: LED-1 */
-void test_a_fault_without_a_code_blinks_fast(void) {
-    static bool pattern[200];
-    for (uint32_t ms = 0; ms < 200; ms++) {
-        pattern[ms] = ms < 100;
-    }
-    expect_pattern(AGV_LED_BLINK, false, pattern, 200);
-}
-
-/* Shows: TOP-4 */
-void test_healthy_in_shadow_mode_is_a_short_flash(void) {
-    static bool pattern[2000];
-    for (uint32_t ms = 0; ms < 2000; ms++) {
-        pattern[ms] = ms < 100;
-    }
-    expect_pattern(AGV_LED_HEALTHY, true, pattern, 2000);
-}
-
-/* Shows: TOP-4, LED-1 */
-void test_a_code_is_the_same_in_shadow_mode(void) {
-    static bool pattern[10000];
-    const uint32_t length = pattern_of(13, pattern);
-    expect_pattern(13, true, pattern, length);
+    expect_pattern((int8_t)code, shadow, pattern, period_ms);
 }
 
 /* Steps of any length keep the pattern in time: code 2 is 2200 ms long. */

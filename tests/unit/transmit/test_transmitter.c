@@ -484,53 +484,6 @@ void test_in_bus_off_no_throttle_0_is_passed_to_the_hal(void) {
 
 /* ---- Overrides ---- */
 
-/* Shows: TOP-1 */
-void test_a_command_that_differs_is_overridden(void) {
-    static const uint8_t reserved[8] = {8, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF};
-    answer(AGV_MSG_GEAR_COMMAND, PARK);
-    answer(AGV_MSG_GEAR_COMMAND, reserved); /* reserved bits command nothing */
-    TEST_ASSERT_EQUAL_UINT(0, sent_count);
-    answer(AGV_MSG_GEAR_COMMAND, DRIVE);
-    TEST_ASSERT_EQUAL_UINT(1, sent_count);
-    expect_sent(0, HAL_CAN_VEHICLE, 0x168, PARK);
-    answer(AGV_MSG_THROTTLE_COMMAND, NULL); /* malformed */
-    expect_sent(1, HAL_CAN_VEHICLE, 0x075, ZEROS);
-}
-
-/* Another alive counter does not make another command. */
-/* Shows: TOP-1 */
-void test_the_alive_counter_of_a_foreign_43f_commands_nothing(void) {
-    static const uint8_t same[8] = {0, 0, 0, 0, 0x70, 0, 0, 77};
-    static const uint8_t other[8] = {0, 0, 0, 0, 0x30, 0, 0, 77};
-    answer(AGV_MSG_TURN_SIGNAL_COMMAND, same);
-    TEST_ASSERT_EQUAL_UINT(0, sent_count);
-    answer(AGV_MSG_TURN_SIGNAL_COMMAND, other);
-    TEST_ASSERT_EQUAL_UINT(1, sent_count);
-}
-
-/* Shows: TOP-1 */
-void test_a_command_that_is_not_sent_is_not_overridden(void) {
-    orders.park_released = false;
-    answer(AGV_MSG_GEAR_COMMAND, DRIVE);
-    orders.state = AGV_STATE_STANDBY;
-    answer(AGV_MSG_THROTTLE_COMMAND, DRIVE);
-    TEST_ASSERT_EQUAL_UINT(0, sent_count);
-}
-
-/* Shows: TOP-1 */
-void test_within_5_ms_the_override_waits_and_is_sent_by_a_tick(void) {
-    burst();
-    sent_count = 0;
-    tick(1);
-    answer(AGV_MSG_GEAR_COMMAND, DRIVE);
-    TEST_ASSERT_EQUAL_UINT(1, sent_count);
-    tick(1);
-    answer(AGV_MSG_GEAR_COMMAND, DRIVE);
-    EXPECT_COUNT_AFTER(3, 1);
-    EXPECT_COUNT_AFTER(1, 2);
-    expect_sent(1, HAL_CAN_VEHICLE, 0x168, PARK);
-}
-
 /* The queue is full: the override is tried again, and also answers a frame that came within its 5 ms. */
 /* Shows: TOP-1 */
 void test_an_override_that_waits_for_the_hal_answers_what_comes_meanwhile(void) {
