@@ -6,7 +6,7 @@
 #include "common/message_facts.h"
 #include "live/scenario_bus.h"
 
-enum { PATH_SIZE = 64 };
+enum { PATH_SIZE = 64, STATUS_AGAIN_MS = 5 };
 
 #define NO_BOARD "board: a computer has no feedback, emergency stop, reset button or second clock"
 
@@ -122,27 +122,43 @@ static const char *why_not_start(const scenario_t *scenario) {
     return (scenario->board.failed == 0) ? NULL : "self_test: the self-test of a node cannot be made to fail";
 }
 
-/** Faults that need acknowledges on the wire. */
-static const char *why_not_faults(const scenario_expect_t *expect) {
+/** Faults that need acknowledges or collisions on the wire, unless a step plays them. */
+static const struct {
+    agv_fault_t fault;
+    scenario_do_t played_by;
+    const char *why;
+} faults_of_wire[] = {
+    {AGV_FAULT_TX_STALLED, SCENARIO_TX_STALL,
+     "TX_STALLED: a virtual interface accepts every frame, acknowledged or not"},
+    {AGV_FAULT_AI_BUS_OFF, SCENARIO_BUS_OFF,
+     "AI_BUS_OFF: a virtual interface accepts every frame, acknowledged or not"},
+    {AGV_FAULT_ERROR_PASSIVE, SCENARIO_ERROR_PASSIVE, "ERROR_PASSIVE: frames do not collide on a virtual interface"},
+};
+
+static bool expects(const scenario_expect_t *expect, agv_fault_t fault) {
+    bool expected = false;
     for (size_t i = 0; i < expect->faults.count; i++) {
-        if (expect->faults.items[i].fault == AGV_FAULT_TX_STALLED) {
-            return "TX_STALLED: a virtual interface accepts every frame, acknowledged or not";
+        expected = expected || (expect->faults.items[i].fault == fault);
+    }
+    return expected;
+}
+
+static bool plays(const scenario_t *scenario, scenario_do_t what) {
+    bool played = false;
+    for (size_t i = 0; i < scenario->step_count; i++) {
+        const scenario_step_t *step = &scenario->steps[i];
+        played = played || (!step->of_vehicle && (step->supervisor.what == what));
+    }
+    return played;
+}
+
+static const char *why_not_faults(const scenario_t *scenario) {
+    for (size_t i = 0; i < sizeof faults_of_wire / sizeof faults_of_wire[0]; i++) {
+        if (expects(&scenario->expect, faults_of_wire[i].fault) && !plays(scenario, faults_of_wire[i].played_by)) {
+            return faults_of_wire[i].why;
         }
     }
     return NULL;
-}
-
-/** On the AI side that is AI_BUS_OFF, which bus-off is, too. */
-static const char *why_not_ai_side(const scenario_t *scenario) {
-    bool expected = false;
-    for (size_t i = 0; i < scenario->expect.faults.count; i++) {
-        expected = expected || (scenario->expect.faults.items[i].fault == AGV_FAULT_AI_BUS_OFF);
-    }
-    for (size_t i = 0; i < scenario->step_count; i++) {
-        const scenario_step_t *step = &scenario->steps[i];
-        expected = expected && (step->of_vehicle || (step->supervisor.what != SCENARIO_BUS_OFF));
-    }
-    return expected ? "AI_BUS_OFF: a virtual interface accepts every frame, acknowledged or not" : NULL;
 }
 
 /** Whether a frame is one that the kernel hands over to the supervisor (node.c). */
@@ -176,8 +192,7 @@ const char *scenario_bus_leaves_out(const scenario_bus_t *bus, const scenario_t 
         const scenario_step_t *step = &scenario->steps[i];
         why = step->of_vehicle ? why_not_vehicle(&step->vehicle) : why_not_step(bus, scenario, &step->supervisor);
     }
-    why = (why != NULL) ? why : why_not_faults(&scenario->expect);
-    why = (why != NULL) ? why : why_not_ai_side(scenario);
+    why = (why != NULL) ? why : why_not_faults(scenario);
     if ((why == NULL) && (scenario->expect.no_hazards != 0)) {
         why = "hazards: they are checked inside the simulated vehicle";
     }
@@ -201,6 +216,12 @@ static void narrow(scenario_window_t *window, uint32_t by_ms, uint32_t end_ms) {
     }
 }
 
+/** At a trip the supervisor sends a status frame again that may have been discarded. An interface may have sent it already. */
+static void tolerate_again(const scenario_t *scenario, scenario_frame_t *frame) {
+    const bool is_status = scenario_frame_id(scenario, frame) == scenario->config.status_frame_id;
+    frame->again_ms = is_status ? (uint32_t)STATUS_AGAIN_MS : 0;
+}
+
 static void tolerate_frames(scenario_t *scenario, uint32_t by_ms) {
     scenario_expect_t *expect = &scenario->expect;
     for (size_t i = 0; i < expect->frames.count; i++) {
@@ -208,6 +229,7 @@ static void tolerate_frames(scenario_t *scenario, uint32_t by_ms) {
         if (frame->every_ms != 0) {
             narrow(&frame->at_ms, by_ms, scenario->duration_ms);
             frame->jitter_ms += by_ms;
+            tolerate_again(scenario, frame);
         } else if (frame->count.to == UINT32_MAX) {
             widen(&frame->at_ms, by_ms);
         }

@@ -109,6 +109,9 @@ static void check_frame(scenario_check_t *check, size_t index, uint32_t t_ms, co
         return;
     }
     const uint32_t gap_ms = t_ms - seen->last_ms;
+    if ((seen->count > 0) && (gap_ms < expected->again_ms)) {
+        return;
+    }
     const bool good = (seen->count > 0)
                           ? gap_is_good(expected, gap_ms)
                           : (expected->every_ms == 0) || (gap_ms <= expected->every_ms + expected->jitter_ms);

@@ -82,6 +82,10 @@ void test_what_a_virtual_interface_never_does(void) {
 #define AI_BUS_OFF "steps:\n  - {at_ms: 5, supervisor: bus_off, side: ai}\n"
     is_left_out(BEGIN "topology: gateway\n" AI_BUS_OFF NO_STATES "  faults: [{name: AI_BUS_OFF, raised_ms: 5}]\n",
                 NULL);
+    is_left_out(BEGIN NO_STATES "  faults: [{name: ERROR_PASSIVE, raised_ms: 5}]\n", "ERROR_PASSIVE: ");
+    is_left_out(BEGIN "steps:\n  - {at_ms: 5, supervisor: error_passive}\n" NO_STATES
+                      "  faults: [{name: ERROR_PASSIVE, raised_ms: 5}]\n",
+                NULL);
     is_left_out(BEGIN "topology: gateway\nconfig: {bus_off_recovery_ms: 125}\n" AI_BUS_OFF NO_STATES, "bus_off: ");
 }
 
@@ -152,6 +156,16 @@ void test_what_lasts_is_narrowed_but_for_the_ends_of_the_run(void) {
     TEST_ASSERT_GREATER_OR_EQUAL_UINT32(1000, expect->never.items[1].at_ms.to);
     is_window(expect->frames.items[0].at_ms, 150, 850);
     TEST_ASSERT_EQUAL_UINT32(52, expect->frames.items[0].jitter_ms);
+}
+
+/* It may have been sent before the trip discards it. */
+void test_only_a_status_frame_may_come_again_at_once(void) {
+    read_scenario(BEGIN "expect:\n  states: []\n  frames:\n    - {id: 7F0h, at_ms: [100, 900], every_ms: 100}\n"
+                        "    - {id: 43Fh, at_ms: [100, 900], every_ms: 100}\n");
+    TEST_ASSERT_EQUAL_UINT32(0, scenario.expect.frames.items[0].again_ms);
+    scenario_bus_tolerate(&virtual_bus, &scenario);
+    TEST_ASSERT_EQUAL_UINT32(5, scenario.expect.frames.items[0].again_ms);
+    TEST_ASSERT_EQUAL_UINT32(0, scenario.expect.frames.items[1].again_ms);
 }
 
 void test_counts_hold_in_the_time_as_it_stands(void) {
