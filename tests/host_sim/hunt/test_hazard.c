@@ -725,10 +725,10 @@ void test_h2_a_flipped_bit_is_a_trip_of_its_own(void) {
 /** It is not detected, or has no effect: then the angle of the trip is still right. */
 void test_h2_a_flipped_bit_without_effect_is_no_other_trip(void) {
     const stub_t holds = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .hold_ms = TRIP_MS + 900};
-    const char *const flip = "  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n%s"
-                             "  - {at_ms: 3200, ai: drive, gear: D, throttle_pct: 60, steer_deg: 80}\n"
-                             "  - {at_ms: 3600, supervisor: flip_bit, bit: 1}\n"
-                             "  - {at_ms: 3880, ai: mute, message: steering_command}\n";
+    static const char flip[] = "  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n%s"
+                               "  - {at_ms: 3200, ai: drive, gear: D, throttle_pct: 60, steer_deg: 80}\n"
+                               "  - {at_ms: 3600, supervisor: flip_bit, bit: 1}\n"
+                               "  - {at_ms: 3880, ai: mute, message: steering_command}\n";
     expect_none(&holds, with(flip, ""));
     /* dropped, and the first angle after that is held */
     expect_none(&holds, with(flip, "  - {at_ms: 3010, eps: set, field: mode, value: 00h, frames: 8}\n"));
