@@ -199,6 +199,7 @@ typedef struct {
     hazard_eps_t eps;
     int32_t contradicted_ms; /**< 101h reports standstill, and 363h a speed: budget, up to speed_implausible_ms */
     uint64_t stood_ms;       /**< 101h last reported standstill, and was not doubted */
+    uint64_t moved_ms;       /**< 101h or 363h last reported no standstill */
     uint64_t bad_command_ms; /**< the last malformed AI command */
     bool has_bad_command;
     uint64_t foreign_ms;  /**< first foreign command on the vehicle side that was not answered; 0: none */
@@ -293,6 +294,7 @@ bool hazard_eps_in_angle_control(const hazard_t *hazard);
 bool hazard_eps_perhaps_takes_none(const hazard_t *hazard);
 void hazard_speed_tick(hazard_t *hazard);
 bool hazard_is_said_to_stand(const hazard_t *hazard);
+bool hazard_is_at_standstill(const hazard_t *hazard);
 void hazard_park_frame(hazard_t *hazard);
 void hazard_hold_anew(hazard_t *hazard);
 void hazard_hold_perhaps_anew(hazard_t *hazard);

@@ -100,10 +100,11 @@ static bool is_off_ignored(const hazard_t *hazard) {
     return hazard->asked_off_ms != 0;
 }
 
-/** Neither, or both. */
+/** Neither, or both, while a speed is reported. */
 static bool is_without_mode(const hazard_t *hazard) {
     const hazard_message_t *status = &hazard->messages[AGV_MSG_VEHICLE_STATUS];
-    return status->has && (((status->data[MODE_BYTE] & MODE_BITS) == 0) || hazard->mode.both);
+    return status->has && !hazard_is_at_standstill(hazard) &&
+           (((status->data[MODE_BYTE] & MODE_BITS) == 0) || hazard->mode.both);
 }
 
 static bool is_in_both_modes(const hazard_t *hazard) {

@@ -51,6 +51,17 @@ static void follow_contradiction(hazard_t *hazard) {
     *spent_ms = (*spent_ms < 0) ? 0 : (*spent_ms > full_ms) ? full_ms : *spent_ms;
 }
 
+/** Both reports are those of a vehicle that stands. */
+static bool both_report_standstill(const hazard_t *hazard) {
+    agv_vehicle_status_t status;
+
+    (void)agv_unpack_vehicle_status(&status, hazard->messages[AGV_MSG_VEHICLE_STATUS].data);
+    return is_fresh(hazard, AGV_MSG_WHEEL_SPEED, FRESH_MS) &&
+           wheels_are_below(hazard, hazard->config->standstill_speed_mm_s) &&
+           ((hazard->config->standstill_vcu_counts == AGV_STANDSTILL_VCU_ANY) ||
+            (status.speed_m_per_h <= hazard->config->standstill_vcu_counts));
+}
+
 /** The time of a contradiction adds up, and decays while there is none. */
 void hazard_speed_tick(hazard_t *hazard) {
     const int32_t limit_mm_s = hazard->config->standstill_speed_mm_s + MARGIN_MM_S;
@@ -62,6 +73,12 @@ void hazard_speed_tick(hazard_t *hazard) {
         !is_doubted(hazard)) {
         hazard->stood_ms = hazard->t_ms;
     }
+    hazard->moved_ms = both_report_standstill(hazard) ? hazard->moved_ms : hazard->t_ms;
+}
+
+/** Both reports are, and have been for some time: the supervisor cannot know that the vehicle moves. */
+bool hazard_is_at_standstill(const hazard_t *hazard) {
+    return hazard->t_ms - hazard->moved_ms >= hazard->config->standstill_ms;
 }
 
 /** 101h reports standstill, and 363h does not contradict it for long enough. */

@@ -751,6 +751,24 @@ void test_h2_a_right_angle_may_be_sent_again_within_2_s(void) {
     expect_another_angle(true, &holds, with("%s  - {at_ms: 9000, supervisor: free_queue}\n", head));
 }
 
+/** At a reported standstill no valid mode is no fault. Both speeds have to report it, all the time. */
+void test_h6_no_valid_mode_at_a_reported_standstill(void) {
+    const char *const wheels =
+        "  - {at_ms: 2900, vcu: set_bytes, message: wheel_speed, bytes: \"00 00 00 00 00 00 00 00\"}\n"
+        "  - {at_ms: 3000, vcu: set, field: mode_bits, value: 0h}\n";
+
+    expect_none(&MUTE, with("  - {at_ms: 2900, vcu: set, field: speed, value: 0000h}\n%s", wheels));
+    expect_none(
+        &MUTE,
+        with("  - {at_ms: 2900, vcu: set, field: speed, value: 0000h, frames: 34, again_every_ms: 370}\n%s", wheels));
+    expect_hazard(
+        HAZARD_FALSE_NODE, "no valid mode is reported", &MUTE,
+        with("  - {at_ms: 2900, vcu: set, field: speed, value: 0000h, frames: 8, again_every_ms: 90}\n%s", wheels));
+    expect_hazard(HAZARD_FALSE_NODE, "no valid mode is reported", &MUTE,
+                  "  - {at_ms: 2900, vcu: set, field: speed, value: 0000h}\n"
+                  "  - {at_ms: 3000, vcu: set, field: mode_bits, value: 0h}\n");
+}
+
 /** A gateway that is in bus-off there hears no invalid command, and passes none. */
 void test_h6_an_invalid_command_behind_a_bus_off(void) {
     const char *const steps =
