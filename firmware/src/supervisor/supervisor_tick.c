@@ -90,7 +90,7 @@ static void observe_hardware(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) 
 static bool expects_commands(const agv_core_t *core) {
     const agv_mode_t *const mode = &core->mode;
     const bool is_handed_over = agv_mode_is_manual(mode) && !agv_mode_is_ambiguous(mode);
-    return agv_mode_is_engaged(mode) && !(agv_core_is_gateway(core) && is_handed_over);
+    return agv_mode_is_engaged(mode) && (!agv_core_is_gateway(core) || !is_handed_over);
 }
 
 static void observe_time(agv_core_t *core, uint32_t elapsed_ms) {
