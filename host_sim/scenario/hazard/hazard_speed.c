@@ -1,11 +1,8 @@
 /* Two reports of the speed: the wheels (101h) and the VCU (363h). Whether the supervisor can know that the vehicle moves. */
 #include "scenario/hazard/hazard.h"
 
-enum { STANDS_MM_S = 100, FRESH_MS = 100, STEP_MS = 10, DIFFERS_MM_S = 850 };
+enum { STANDS_MM_S = 100, FRESH_MS = 100, STEP_MS = 10, DIFFERS_M_PER_H = 3063 /* 0.85 m/s */ };
 enum { MOVING_MM_S = 300, MARGIN_MM_S = 50, MARGIN_MS = 50, STOOD_MS = 300 };
-
-#define MM_PER_M 1000u
-#define S_PER_H 3600u
 
 static bool is_fresh(const hazard_t *hazard, agv_message_t message, uint32_t within_ms) {
     const hazard_message_t *seen = &hazard->messages[message];
@@ -16,26 +13,27 @@ static bool is_below(int32_t speed_mm_s, int32_t limit_mm_s) {
     return (speed_mm_s < limit_mm_s) && (speed_mm_s > -limit_mm_s);
 }
 
-/** 101h reports that both wheels are slower. */
+/** 101h is fresh, and reports that both wheels are slower. */
 static bool wheels_are_below(const hazard_t *hazard, int32_t limit_mm_s) {
     agv_wheel_speed_t speed;
 
     (void)agv_unpack_wheel_speed(&speed, hazard->messages[AGV_MSG_WHEEL_SPEED].data);
-    return is_below(speed.left_mm_s, limit_mm_s) && is_below(speed.right_mm_s, limit_mm_s);
+    return is_fresh(hazard, AGV_MSG_WHEEL_SPEED, FRESH_MS) && is_below(speed.left_mm_s, limit_mm_s) &&
+           is_below(speed.right_mm_s, limit_mm_s);
 }
 
-static int32_t vcu_speed_mm_s(const hazard_t *hazard) {
+static uint32_t vcu_speed_m_per_h(const hazard_t *hazard) {
     agv_vehicle_status_t status;
 
     (void)agv_unpack_vehicle_status(&status, hazard->messages[AGV_MSG_VEHICLE_STATUS].data);
-    return (int32_t)(((uint32_t)status.speed_m_per_h * MM_PER_M) / S_PER_H);
+    return status.speed_m_per_h;
 }
 
 /** 101h reports standstill, and 363h a speed at which that cannot be right. */
 static bool is_contradicted(const hazard_t *hazard) {
-    return is_fresh(hazard, AGV_MSG_WHEEL_SPEED, FRESH_MS) && wheels_are_below(hazard, STANDS_MM_S) &&
+    return wheels_are_below(hazard, STANDS_MM_S) &&
            is_fresh(hazard, AGV_MSG_VEHICLE_STATUS, hazard->config->vcu_heartbeat_timeout_ms) &&
-           (vcu_speed_mm_s(hazard) > DIFFERS_MM_S);
+           (vcu_speed_m_per_h(hazard) > DIFFERS_M_PER_H);
 }
 
 static bool is_doubted(const hazard_t *hazard) {
@@ -53,13 +51,8 @@ static void follow_contradiction(hazard_t *hazard) {
 
 /** Both reports are those of a vehicle that stands. */
 static bool both_report_standstill(const hazard_t *hazard) {
-    agv_vehicle_status_t status;
-
-    (void)agv_unpack_vehicle_status(&status, hazard->messages[AGV_MSG_VEHICLE_STATUS].data);
-    return is_fresh(hazard, AGV_MSG_WHEEL_SPEED, FRESH_MS) &&
-           wheels_are_below(hazard, hazard->config->standstill_speed_mm_s) &&
-           ((hazard->config->standstill_vcu_counts == AGV_STANDSTILL_VCU_ANY) ||
-            (status.speed_m_per_h <= hazard->config->standstill_vcu_counts));
+    return wheels_are_below(hazard, hazard->config->standstill_speed_mm_s) &&
+           (vcu_speed_m_per_h(hazard) <= hazard->config->standstill_vcu_counts);
 }
 
 /** The time of a contradiction adds up, and decays while there is none. */
@@ -69,8 +62,7 @@ void hazard_speed_tick(hazard_t *hazard) {
     if ((hazard->t_ms % STEP_MS) == 0) {
         follow_contradiction(hazard);
     }
-    if (is_fresh(hazard, AGV_MSG_WHEEL_SPEED, FRESH_MS) && wheels_are_below(hazard, limit_mm_s) &&
-        !is_doubted(hazard)) {
+    if (wheels_are_below(hazard, limit_mm_s) && !is_doubted(hazard)) {
         hazard->stood_ms = hazard->t_ms;
     }
     hazard->moved_ms = both_report_standstill(hazard) ? hazard->moved_ms : hazard->t_ms;
@@ -83,8 +75,7 @@ bool hazard_is_at_standstill(const hazard_t *hazard) {
 
 /** 101h reports standstill, and 363h does not contradict it for long enough. */
 bool hazard_is_said_to_stand(const hazard_t *hazard) {
-    return is_fresh(hazard, AGV_MSG_WHEEL_SPEED, FRESH_MS) && wheels_are_below(hazard, STANDS_MM_S) &&
-           !is_doubted(hazard);
+    return wheels_are_below(hazard, STANDS_MM_S) && !is_doubted(hazard);
 }
 
 /** Since the trip. A flipped bit while it is tripped begins no other time. */
