@@ -220,6 +220,9 @@ static void narrow(scenario_window_t *window, uint32_t by_ms, uint32_t end_ms) {
 static void tolerate_again(const scenario_t *scenario, scenario_frame_t *frame) {
     const bool is_status = scenario_frame_id(scenario, frame) == scenario->config.status_frame_id;
     frame->again_ms = is_status ? (uint32_t)STATUS_AGAIN_MS : 0;
+    for (size_t i = 0; i < scenario->expect.states.count; i++) {
+        frame->again_max += (scenario->expect.states.items[i].to == AGV_STATE_TRIPPED) ? 1 : 0;
+    }
 }
 
 static void tolerate_frames(scenario_t *scenario, uint32_t by_ms) {

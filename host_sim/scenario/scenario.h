@@ -125,6 +125,7 @@ typedef struct {
     uint32_t every_ms; /**< 0: not evaluated */
     uint32_t jitter_ms;
     uint32_t again_ms; /**< a frame that comes sooner than this after the last one is the same one, sent again */
+    size_t again_max;  /**< how many may be sent again */
 } scenario_frame_t;
 
 typedef struct {

@@ -96,7 +96,7 @@ static bool is_invalid(const agv_timers_t *timers) {
 
 agv_mode_change_t agv_mode_tick(agv_mode_t *mode, agv_timers_t *timers, const agv_config_t *config, bool vcu_alive,
                                 uint32_t elapsed_ms) {
-    /* while the last 363h reports manual, driving is not judged: without end this would hide every fault */
+    /* while the last 363h reports manual, driving is not judged: without a limit this would hide every fault */
     agv_budget_add(&mode->manual_spent, mode->engaged && (mode->bits == (uint8_t)MANUAL), elapsed_ms,
                    flicker_ms(config));
     reduce_budget(timers, AGV_TIMER_BOTH_MODES, &mode->both_spent, elapsed_ms);
@@ -119,7 +119,7 @@ void agv_mode_count_engagement(agv_mode_t *mode, agv_timers_t *timers, agv_fault
 void agv_mode_check(agv_mode_t *mode, agv_timers_t *timers, agv_fault_monitor_t *faults, const agv_config_t *config,
                     bool supervising, bool standstill) {
     const bool began = agv_timer_reached(timers, AGV_TIMER_NO_MODE);
-    /* nor are both bits, and manual while engaged, a valid mode: a node that alternates between them is found */
+    /* both bits, or manual while engaged, count as no valid mode: a node that alternates between them is detected */
     const bool known = (mode->bits == (uint8_t)AUTOPILOT) || ((mode->bits == (uint8_t)MANUAL) && !mode->engaged);
     const bool none = mode->heard && !known && !standstill;
     if (supervising && mode->manual_spent.present) {

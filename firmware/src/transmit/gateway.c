@@ -122,8 +122,8 @@ static uint32_t limit_to_speed(const agv_gateway_facts_t *facts, uint32_t wanted
 
 /*
  * The limit starts one cycle ago. When a command passes without an EPS in angle control, the limit starts again at the next
- * one, until driving is judged and an EPS in angle control has followed it. Otherwise the commands would never leave the
- * measured angle of an EPS that is stuck (SUP-10).
+ * command. This ends when driving is judged and a command has passed to an EPS in angle control: otherwise the commands would
+ * never leave the measured angle of an EPS that is stuck (SUP-10).
  */
 static void begin_slew(agv_gateway_t *gateway, const agv_gateway_facts_t *facts) {
     if (!gateway->steering_known) {

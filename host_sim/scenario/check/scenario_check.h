@@ -23,6 +23,7 @@
 typedef struct {
     uint32_t count;
     uint32_t last_ms;
+    size_t again;
     uint32_t nearest_ms; /* of a match outside its time */
     bool near;
     bool first_done;

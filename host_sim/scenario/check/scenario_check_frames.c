@@ -109,7 +109,8 @@ static void check_frame(scenario_check_t *check, size_t index, uint32_t t_ms, co
         return;
     }
     const uint32_t gap_ms = t_ms - seen->last_ms;
-    if ((seen->count > 0) && (gap_ms < expected->again_ms)) {
+    if ((seen->count > 0) && (gap_ms < expected->again_ms) && (seen->again < expected->again_max)) {
+        seen->again++;
         return;
     }
     const bool good = (seen->count > 0)

@@ -160,11 +160,13 @@ void test_what_lasts_is_narrowed_but_for_the_ends_of_the_run(void) {
 
 /* It may have been sent before the trip discards it. */
 void test_only_a_status_frame_may_come_again_at_once(void) {
-    read_scenario(BEGIN "expect:\n  states: []\n  frames:\n    - {id: 7F0h, at_ms: [100, 900], every_ms: 100}\n"
+    read_scenario(BEGIN "expect:\n  states: [{to: INIT, at_ms: 0}, {to: TRIPPED, at_ms: 5}]\n  frames:\n    - {id: "
+                        "7F0h, at_ms: [100, 900], every_ms: 100}\n"
                         "    - {id: 43Fh, at_ms: [100, 900], every_ms: 100}\n");
     TEST_ASSERT_EQUAL_UINT32(0, scenario.expect.frames.items[0].again_ms);
     scenario_bus_tolerate(&virtual_bus, &scenario);
     TEST_ASSERT_EQUAL_UINT32(5, scenario.expect.frames.items[0].again_ms);
+    TEST_ASSERT_EQUAL_size_t(1, scenario.expect.frames.items[0].again_max); /* once at each trip */
     TEST_ASSERT_EQUAL_UINT32(0, scenario.expect.frames.items[1].again_ms);
 }
 
