@@ -87,8 +87,8 @@ static void check_first(scenario_check_t *check, size_t index, uint32_t t_ms, co
     }
 }
 
-static bool gap_is_good(const scenario_frame_t *expected, uint32_t gap_ms) {
-    return (expected->every_ms == 0) || ((gap_ms + expected->jitter_ms >= expected->every_ms) &&
+static bool gap_is_good(const scenario_frame_t *expected, bool is_first, uint32_t gap_ms) {
+    return (expected->every_ms == 0) || ((is_first || (gap_ms + expected->jitter_ms >= expected->every_ms)) &&
                                          (gap_ms <= expected->every_ms + expected->jitter_ms));
 }
 
@@ -113,10 +113,7 @@ static void check_frame(scenario_check_t *check, size_t index, uint32_t t_ms, co
         seen->again++;
         return;
     }
-    const bool good = (seen->count > 0)
-                          ? gap_is_good(expected, gap_ms)
-                          : (expected->every_ms == 0) || (gap_ms <= expected->every_ms + expected->jitter_ms);
-    if (!good && !seen->broken) {
+    if (!gap_is_good(expected, seen->count == 0, gap_ms) && !seen->broken) {
         seen->broken = true;
         scenario_check_fail(check, expected->line,
                             "%s is expected every %u ms, seen: %u ms after the previous one at %u ms",
