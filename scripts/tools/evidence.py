@@ -4,7 +4,7 @@ Tables that are read:
   docs/evidence.md                      claim, way and what is not shown, by hand; [`name`] in the second column is a proof of
                                         tests/proofs, or a name of figures.tsv
   tests/proofs/figures.tsv              command, date, revision and figure of a name (scripts/verify --record)
-  tests/proofs/mutation/rows            the stored mutant of a row: the file that is changed
+  tests/proofs/seeded.tsv               the stored mutant of a row (checker `row`): the file that is changed
   tests/proofs/mutation/figures.tsv     mutants of a file (mutate.py merge --record), once they were all tried
   docs/hunt.md                          the rows that a hazard judges
   docs/faults.md                        the rows that a fault belongs to
@@ -91,14 +91,15 @@ def mutants(root, rows, problems):
     """Row -> file of its stored mutant, and what became of the mutants of this file."""
     counts = read_table(root, "tests/proofs/mutation/figures.tsv", 1 + len(TITLES), problems)
     cells = {}
-    for line in (root / "tests/proofs/mutation/rows").read_text(encoding="ascii").splitlines():
-        if line.startswith(("#", "- ", "+ ")) or not line:
+    for line in (root / "tests/proofs/seeded.tsv").read_text(encoding="utf-8").splitlines():
+        checker, row, _, path = (line.split("\t") + 4 * [""])[:4]
+        if checker != "row":
             continue
-        row, _, file = line.partition(" ")
         if row not in rows:
-            problems.append(f"tests/proofs/mutation/rows: {row} is not a row")
+            problems.append(f"tests/proofs/seeded.tsv: {row} is not a row")
+        file = path.rsplit("/", 1)[-1]
         of = [f"{number} {title}" for number, title in zip(counts.get(file, []), TITLES) if number != "0"]
-        cells[row] = f"`{file.rsplit('/', 1)[-1]}`" + (f": {', '.join(of)}" if of else "")
+        cells[row] = f"`{file}`" + (f": {', '.join(of)}" if of else "")
     return cells
 
 

@@ -6,7 +6,7 @@
   mutate run [--shard i/n] [FILE...]       try those that have no result yet; results are appended to a file of lines
   mutate try ID...                         try some, and tell
   mutate merge [RESULTS...]                sum up; fails below 95 % or above 5 %, or when a mutant has no result
-  mutate rows [ROW...]                     the stored mutants of the file rows: each breaks its row, and a test notices
+  mutate rows [ROW...]                     the stored mutants of seeded.tsv: each breaks its row, and a test notices
 """
 import argparse
 import collections
@@ -204,7 +204,7 @@ def command_merge(arguments):
 def command_rows(arguments):
     wanted = subprocess.run([bench.ROOT / "scripts/tools/traceability.py"], stdout=subprocess.PIPE, check=True, text=True).stdout
     with open_bench(arguments) as at:
-        return rows.check(at, HERE / "rows", rows.read_shown(wanted), arguments.names)
+        return rows.check(at, rows.read_shown(wanted), arguments.names)
 
 
 def main():
