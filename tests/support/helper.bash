@@ -28,8 +28,3 @@ passes() {
         return 1
     fi
 }
-
-# build PRESET TARGET
-build() {
-    passes cmake --build "$ROOT/build/$1" --target "$2"
-}

@@ -8,7 +8,7 @@
 #include "agv/state.h"
 #include "unity.h"
 
-enum { MS = 1000, S = 1000000, UNITS_A_MS = 10 };
+enum { MS = 1000, S = 1000000 };
 
 static agv_config_t config;
 static series_t *series;

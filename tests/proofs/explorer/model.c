@@ -12,7 +12,6 @@ static const uint8_t PHASE_MS[TRAFFIC_MESSAGES] = {
     [M_EPS_STATUS] = 6, [M_POSITION] = 9,    [M_WHEELS] = 0,
 };
 
-enum { WRAP = 0, MIDDLE = 0x7FFFFFFF };
 enum { RECOVERY_MS = 2, BABBLE_MS = 5, FOREIGN_MS = 20, WHEEL_MM_S = 200 };
 /* Latest trip: at any time; after four engagements; while engaged; after the grace time and a budget of 1 s. */
 enum { ALWAYS_MS = 250, FLAPPING_MS = 2500, ENGAGED_MS = 1200, FOLLOWED_MS = 1800 };

@@ -13,7 +13,7 @@
 
 #include "testbed_state.h"
 
-/* Defects of the vehicle. Their names, and the fault that each must cause, are in defect.c. */
+/* Defects of the vehicle. Their names, and when each must trip, are in defect.c. */
 typedef enum {
     DEFECT_NONE,
     DEFECT_VCU_SILENT,
@@ -139,10 +139,8 @@ typedef enum { TRIPS_NEVER, TRIPS_ALWAYS, TRIPS_FLAPPING, TRIPS_ENGAGED, TRIPS_F
 
 typedef struct {
     const char *name;
-    const char *fault;        /* reason of the trip */
-    const char *frozen_fault; /* NULL, or another possible reason */
-    uint8_t like;             /* defect with the same effect while not engaged (abstract.h) */
-    uint8_t trips;            /* when it trips: defect_trips_t */
+    uint8_t like;  /* defect with the same effect while not engaged (abstract.h) */
+    uint8_t trips; /* when it trips: defect_trips_t */
 } defect_row_t;
 extern const defect_row_t DEFECT_ROWS[DEFECTS];
 void defect_apply(defect_t defect);

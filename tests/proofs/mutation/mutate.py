@@ -114,19 +114,18 @@ def command_try(arguments):
 
 
 def read_equivalents(found, problems):
-    """The ids that the file equivalents lists, each with an argument behind it."""
-    listed = []
+    """The ids that the file equivalents lists, separated by commas, with an argument behind them."""
+    listed = set()
     for line in (HERE / "equivalents").read_text(encoding="utf-8").splitlines():
-        key, _, argument = line.partition(" ")
-        if not key or key.startswith("#"):
+        keys, _, argument = line.partition(" ")
+        if not keys or keys.startswith("#"):
             continue
-        if key not in found:
-            problems.append(f"equivalents: there is no mutant {key}")
-        elif not argument.strip():
-            problems.append(f"equivalents: no argument for {key}")
-        else:
-            listed.append(key)
-    return set(listed)
+        if not argument.strip():
+            problems.append(f"equivalents: no argument for {keys}")
+            continue
+        listed.update(keys.split(","))
+    problems += [f"equivalents: there is no mutant {key}" for key in sorted(listed - found)]
+    return listed & found
 
 
 def table(found, verdicts):

@@ -8,14 +8,7 @@
 static agv_gateway_t gateway;
 static agv_config_t config;
 static agv_vehicle_t vehicle;
-static agv_state_t state;
-static uint32_t now_ms;
-static uint8_t gear_sent;
-static bool gear_fresh;
-static bool angle_fresh;
-static bool autopilot;
-static bool standstill;
-static bool judged;
+static agv_gateway_facts_t facts;
 static bool limited;
 static uint8_t data[8];
 
@@ -24,48 +17,31 @@ void setUp(void) {
     vehicle = (agv_vehicle_t){0};
     agv_config_defaults(&config);
     config.topology = AGV_TOPOLOGY_GATEWAY;
-    state = AGV_STATE_ACTIVE;
-    now_ms = 1000;
-    gear_sent = 0;
-    gear_fresh = true;
-    angle_fresh = true;
-    autopilot = true;
-    standstill = false;
-    judged = false;
+    facts = (agv_gateway_facts_t){.config = &config,
+                                  .vehicle = &vehicle,
+                                  .state = AGV_STATE_ACTIVE,
+                                  .now_ms = 1000,
+                                  .gear_fresh = true,
+                                  .angle_fresh = true,
+                                  .autopilot = true};
     vehicle.wheels_fresh = true;
     vehicle.eps_in_angle_mode = true;
     vehicle.gear = 1;
     vehicle.angle_raw = 9000;
 }
 
-/* Adapter to the module: all tests use these functions. */
-static agv_gateway_facts_t facts(void) {
-    return (agv_gateway_facts_t){.config = &config,
-                                 .vehicle = &vehicle,
-                                 .state = state,
-                                 .now_ms = now_ms,
-                                 .gear_sent = gear_sent,
-                                 .gear_fresh = gear_fresh,
-                                 .angle_fresh = angle_fresh,
-                                 .autopilot = autopilot,
-                                 .standstill = standstill,
-                                 .judged = judged};
-}
-
+/* Adapters to the module: all tests use these functions. */
 static bool passes(unsigned command, uint8_t first_byte) {
-    const agv_gateway_facts_t now = facts();
     const uint8_t payload[8] = {first_byte};
-    return agv_gateway_passes(&gateway, &now, command, payload);
+    return agv_gateway_passes(&gateway, &facts, command, payload);
 }
 
 static bool may_wait(unsigned command) {
-    const agv_gateway_facts_t now = facts();
-    return agv_gateway_may_wait(&now, command);
+    return agv_gateway_may_wait(&facts, command);
 }
 
 static void limit(agv_message_t command) {
-    const agv_gateway_facts_t now = facts();
-    limited = agv_gateway_limit(&gateway, &now, command, data);
+    limited = agv_gateway_limit(&gateway, &facts, command, data);
 }
 
 /* Pass 8 bytes to the module and compare the result. */
@@ -88,7 +64,7 @@ static int steer(uint32_t after_ms, int wanted_ddeg) {
     memset(data, 0, sizeof data);
     data[0] = (uint8_t)(raw & 0xFF);
     data[1] = (uint8_t)(raw >> 8);
-    now_ms += after_ms;
+    facts.now_ms += after_ms;
     limit(AGV_MSG_STEERING_COMMAND);
     return (data[0] | data[1] << 8) - 9000;
 }
@@ -102,14 +78,14 @@ void test_which_commands_pass_in_which_state_and_mode(void) {
         for (unsigned command = 0; command < 4; command++) {
             const bool active = (value & 0xFF) == 0x3C;
             const bool standby = (value & 0xFF) == 0x33;
-            state = (agv_state_t)(value & 0xFF);
-            autopilot = value > 0xFF;
+            facts.state = (agv_state_t)(value & 0xFF);
+            facts.autopilot = value > 0xFF;
             config.gateway_in_manual = AGV_IN_MANUAL_HEARTBEAT;
-            const bool motion = active && autopilot;
+            const bool motion = active && facts.autopilot;
             TEST_ASSERT_EQUAL(motion || ((active || standby) && command == 0), passes(command, 1));
             TEST_ASSERT_EQUAL(motion || ((active || standby) && command == 0), may_wait(command));
             config.gateway_in_manual = AGV_IN_MANUAL_ALL;
-            const bool manual = standby && !autopilot;
+            const bool manual = standby && !facts.autopilot;
             TEST_ASSERT_EQUAL(motion || manual || ((active || standby) && command == 0), passes(command, 1));
             TEST_ASSERT_EQUAL(motion || manual || ((active || standby) && command == 0), may_wait(command));
         }
@@ -124,11 +100,11 @@ void test_a_change_of_gear_waits_for_standstill(void) {
         for (unsigned is = 0; is < 5; is++) {
             vehicle.gear = gears[is];
             config.gear_change = AGV_GEAR_CHANGE_AT_STANDSTILL;
-            standstill = false;
+            facts.standstill = false;
             TEST_ASSERT_EQUAL(wanted >= 2 || wanted == is, passes(AGV_MSG_GEAR_COMMAND, gears[wanted]));
-            standstill = true;
+            facts.standstill = true;
             TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, gears[wanted]));
-            standstill = false;
+            facts.standstill = false;
             config.gear_change = AGV_GEAR_CHANGE_ANY;
             TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, gears[wanted]));
         }
@@ -138,12 +114,12 @@ void test_a_change_of_gear_waits_for_standstill(void) {
 /* 0A3h is silent and only warns: the gear that was sent passes, another waits for standstill. */
 /* Shows: TOP-2 */
 void test_with_a_silent_0a3h_the_gear_does_not_change_in_motion(void) {
-    gear_fresh = false;
+    facts.gear_fresh = false;
     vehicle.gear = 1;
-    gear_sent = 2;
+    facts.gear_sent = 2;
     TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 1));
     TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 2));
-    standstill = true;
+    facts.standstill = true;
     TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 1));
 }
 
@@ -154,13 +130,13 @@ void test_only_168h_changes_the_gear(void) {
     TEST_ASSERT_TRUE(passes(AGV_MSG_THROTTLE_COMMAND, 1));
     TEST_ASSERT_TRUE(passes(AGV_MSG_STEERING_COMMAND, 2));
     TEST_ASSERT_TRUE(passes(AGV_MSG_TURN_SIGNAL_COMMAND, 2));
-    standstill = true;
-    state = AGV_STATE_STANDBY;
+    facts.standstill = true;
+    facts.state = AGV_STATE_STANDBY;
     TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 1));
     config.gateway_in_manual = AGV_IN_MANUAL_ALL;
-    autopilot = false;
+    facts.autopilot = false;
     TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 1));
-    standstill = false;
+    facts.standstill = false;
     TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 1));
 }
 
@@ -208,7 +184,7 @@ void test_the_throttle_ceiling(void) {
 
 /* Shows: TOP-2 */
 void test_in_manual_the_throttle_is_0(void) {
-    state = AGV_STATE_STANDBY;
+    facts.state = AGV_STATE_STANDBY;
     TEST_ASSERT_EQUAL_UINT(0, throttle(250));
     TEST_ASSERT_TRUE(limited);
     TEST_ASSERT_EQUAL_UINT(0, throttle(0));
@@ -217,15 +193,14 @@ void test_in_manual_the_throttle_is_0(void) {
 
 /* A received 168h: 1 D, 2 R, 4 N, 8 P. */
 static void gear_commanded(uint8_t gear) {
-    const agv_gateway_facts_t now = facts();
     const uint8_t payload[8] = {gear};
-    agv_gateway_follow_gear(&gateway, &now, AGV_MSG_GEAR_COMMAND, payload);
+    agv_gateway_follow_gear(&gateway, &facts, AGV_MSG_GEAR_COMMAND, payload);
 }
 
 /* Until standstill the throttle would drive the vehicle on in the gear that the AI computer wants to leave. */
 /* Shows: TOP-2 */
 void test_while_a_gear_waits_for_standstill_the_throttle_is_0(void) {
-    gear_sent = 1;
+    facts.gear_sent = 1;
     gear_commanded(1);
     TEST_ASSERT_EQUAL_UINT(75, throttle(75));
     gear_commanded(2);
@@ -233,7 +208,7 @@ void test_while_a_gear_waits_for_standstill_the_throttle_is_0(void) {
     TEST_ASSERT_TRUE(limited);
     TEST_ASSERT_EQUAL_UINT(0, throttle(0));
     TEST_ASSERT_FALSE(limited);
-    standstill = true;
+    facts.standstill = true;
     gear_commanded(2);
     TEST_ASSERT_EQUAL_UINT(75, throttle(75));
 }
@@ -260,14 +235,14 @@ void test_which_gears_wait(void) {
 void test_with_park_at_standstill_p_waits_too(void) {
     config.park = AGV_PARK_AT_STANDSTILL;
     vehicle.gear = 1;
-    gear_sent = 1;
+    facts.gear_sent = 1;
     TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 8));
     TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 4));
     gear_commanded(8);
     TEST_ASSERT_EQUAL_UINT(0, throttle(75));
-    standstill = true;
+    facts.standstill = true;
     TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 8));
-    standstill = false;
+    facts.standstill = false;
     config.gear_change = AGV_GEAR_CHANGE_ANY; /* of D and R */
     TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 8));
     TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 2));
@@ -280,9 +255,9 @@ void test_with_park_at_standstill_p_waits_too(void) {
 void test_p_does_not_depend_on_0a3h_alone(void) {
     config.park = AGV_PARK_AT_STANDSTILL;
     vehicle.gear = 8;
-    gear_sent = 1;
+    facts.gear_sent = 1;
     TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 8));
-    gear_sent = 8;
+    facts.gear_sent = 8;
     TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 8));
     vehicle.gear = 1; /* since then the operator has engaged D */
     TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 8));
@@ -292,7 +267,7 @@ void test_p_does_not_depend_on_0a3h_alone(void) {
 /* Shows: TOP-2 */
 void test_a_gear_waits_on_when_the_state_changes(void) {
     vehicle.gear = 1;
-    gear_sent = 1;
+    facts.gear_sent = 1;
     gear_commanded(2);
     agv_gateway_restart(&gateway);
     TEST_ASSERT_EQUAL_UINT(0, throttle(75));
@@ -303,11 +278,11 @@ void test_a_gear_waits_on_when_the_state_changes(void) {
 /* A vehicle that leaves the gear by itself deviates from its command (SUP-11). */
 /* Shows: TOP-2, SUP-11 */
 void test_a_gear_that_was_sent_does_not_wait(void) {
-    gear_sent = 1;
+    facts.gear_sent = 1;
     vehicle.gear = 2;
     gear_commanded(1);
     TEST_ASSERT_EQUAL_UINT(75, throttle(75));
-    gear_sent = 2;
+    facts.gear_sent = 2;
     gear_commanded(1);
     TEST_ASSERT_EQUAL_UINT(0, throttle(75));
 }
@@ -318,7 +293,7 @@ void test_another_gear_waits_whatever_is_reported(void) {
     static const uint8_t gears[] = {2, 4, 8, 0};
     for (unsigned i = 0; i < 4; i++) {
         for (unsigned k = 0; k < 4; k++) {
-            gear_sent = gears[i];
+            facts.gear_sent = gears[i];
             vehicle.gear = gears[k];
             gear_commanded(1);
             TEST_ASSERT_EQUAL_UINT(0, throttle(75));
@@ -330,10 +305,9 @@ void test_another_gear_waits_whatever_is_reported(void) {
 /* Shows: TOP-2 */
 void test_only_a_gear_that_may_pass_waits(void) {
     const uint8_t payload[8] = {2};
-    const agv_gateway_facts_t now = facts();
-    agv_gateway_follow_gear(&gateway, &now, AGV_MSG_THROTTLE_COMMAND, payload);
+    agv_gateway_follow_gear(&gateway, &facts, AGV_MSG_THROTTLE_COMMAND, payload);
     TEST_ASSERT_EQUAL_UINT(75, throttle(75));
-    autopilot = false;
+    facts.autopilot = false;
     gear_commanded(2);
     TEST_ASSERT_EQUAL_UINT(75, throttle(75));
 }
@@ -346,11 +320,11 @@ void test_the_throttle_rises_at_its_rate(void) {
     config.throttle_rise_pct_s = 100;
     TEST_ASSERT_EQUAL_UINT(25, throttle(250));
     TEST_ASSERT_TRUE(limited);
-    now_ms += 100;
+    facts.now_ms += 100;
     TEST_ASSERT_EQUAL_UINT(50, throttle(250));
-    now_ms += 50;
+    facts.now_ms += 50;
     TEST_ASSERT_EQUAL_UINT(62, throttle(250)); /* 12.5 */
-    now_ms += 100;
+    facts.now_ms += 100;
     TEST_ASSERT_EQUAL_UINT(70, throttle(70));
     TEST_ASSERT_FALSE(limited);
 }
@@ -361,11 +335,11 @@ void test_the_throttle_falls_at_once(void) {
     config.throttle_rise_pct_s = 100;
     for (unsigned i = 1; i <= 10; i++) {
         TEST_ASSERT_EQUAL_UINT(25 * i, throttle(250));
-        now_ms += 100;
+        facts.now_ms += 100;
     }
     TEST_ASSERT_EQUAL_UINT(3, throttle(3));
     TEST_ASSERT_FALSE(limited);
-    now_ms += 100;
+    facts.now_ms += 100;
     TEST_ASSERT_EQUAL_UINT(28, throttle(250));
 }
 
@@ -375,7 +349,7 @@ void test_a_slow_rise_adds_up(void) {
     config.throttle_rise_pct_s = 1;
     for (unsigned i = 1; i <= 40; i++) {
         TEST_ASSERT_EQUAL_UINT(i / 4, throttle(250));
-        now_ms += 100;
+        facts.now_ms += 100;
     }
 }
 
@@ -385,7 +359,7 @@ void test_a_held_throttle_saves_up_no_rise(void) {
     config.throttle_rise_pct_s = 1;
     for (unsigned i = 0; i < 11; i++) {
         TEST_ASSERT_EQUAL_UINT(0, throttle(0));
-        now_ms += 100;
+        facts.now_ms += 100;
     }
     TEST_ASSERT_EQUAL_UINT(0, throttle(250));
 }
@@ -395,13 +369,13 @@ void test_a_held_throttle_saves_up_no_rise(void) {
 void test_the_rise_is_rounded_down_and_the_rest_is_kept(void) {
     config.throttle_rise_pct_s = 59;
     TEST_ASSERT_EQUAL_UINT(0, throttle(0));
-    now_ms += 61;
+    facts.now_ms += 61;
     TEST_ASSERT_EQUAL_UINT(8, throttle(250));
-    now_ms += 1;
+    facts.now_ms += 1;
     TEST_ASSERT_EQUAL_UINT(9, throttle(250));
-    now_ms += 5; /* 67 ms in all */
+    facts.now_ms += 5; /* 67 ms in all */
     TEST_ASSERT_EQUAL_UINT(9, throttle(250));
-    now_ms += 1;
+    facts.now_ms += 1;
     TEST_ASSERT_EQUAL_UINT(10, throttle(250));
 }
 
@@ -411,7 +385,7 @@ void test_a_rise_of_half_counts_loses_nothing(void) {
     config.throttle_rise_pct_s = 10;
     (void)throttle(0);
     for (unsigned i = 1; i <= 10; i++) {
-        now_ms += 100;
+        facts.now_ms += 100;
         TEST_ASSERT_EQUAL_UINT(i * 5 / 2, throttle(250));
     }
 }
@@ -421,11 +395,11 @@ void test_a_rise_of_half_counts_loses_nothing(void) {
 void test_a_throttle_that_is_reached_keeps_no_rest(void) {
     config.throttle_rise_pct_s = 10;
     (void)throttle(0);
-    now_ms += 100;
+    facts.now_ms += 100;
     TEST_ASSERT_EQUAL_UINT(2, throttle(2));
-    now_ms += 39;
+    facts.now_ms += 39;
     TEST_ASSERT_EQUAL_UINT(2, throttle(250));
-    now_ms += 1;
+    facts.now_ms += 1;
     TEST_ASSERT_EQUAL_UINT(3, throttle(250));
 }
 
@@ -433,25 +407,25 @@ void test_a_throttle_that_is_reached_keeps_no_rest(void) {
 /* Shows: TOP-2, TIM-2 */
 void test_a_pause_gives_at_most_a_second_of_rise(void) {
     config.throttle_rise_pct_s = 50;
-    now_ms = 0xFFFFFF00u;
+    facts.now_ms = 0xFFFFFF00u;
     TEST_ASSERT_EQUAL_UINT(12, throttle(250));
-    now_ms += 999;
+    facts.now_ms += 999;
     TEST_ASSERT_EQUAL_UINT(137, throttle(250));
     TEST_ASSERT_EQUAL_UINT(0, throttle(0));
-    now_ms += 5000;
+    facts.now_ms += 5000;
     TEST_ASSERT_EQUAL_UINT(125, throttle(250));
     config.throttle_ceiling_pct = 52;
-    now_ms += 5000;
+    facts.now_ms += 5000;
     TEST_ASSERT_EQUAL_UINT(130, throttle(250));
 }
 
 /* 1000 % a second is 250 counts in 100 ms: the largest rate overflows nothing. */
 void test_the_largest_rise(void) {
     config.throttle_rise_pct_s = 1000;
-    now_ms += 4000;
+    facts.now_ms += 4000;
     TEST_ASSERT_EQUAL_UINT(250, throttle(250));
     TEST_ASSERT_EQUAL_UINT(0, throttle(0));
-    now_ms += 4000;
+    facts.now_ms += 4000;
     TEST_ASSERT_EQUAL_UINT(250, throttle(250));
 }
 
@@ -459,7 +433,7 @@ void test_the_largest_rise(void) {
 void test_after_a_restart_the_rise_starts_at_0(void) {
     config.throttle_rise_pct_s = 100;
     (void)throttle(250);
-    now_ms += 100;
+    facts.now_ms += 100;
     TEST_ASSERT_EQUAL_UINT(50, throttle(250));
     agv_gateway_restart(&gateway);
     TEST_ASSERT_EQUAL_UINT(25, throttle(250));
@@ -560,7 +534,7 @@ TEST_CASE(false)
 TEST_CASE(true)
 void test_the_slew_limit_starts_anew_until_the_eps_is_in_angle_control(bool continues) {
     config.steering_slew_ddeg_s = 4000;
-    judged = continues;
+    facts.judged = continues;
     vehicle.eps_in_angle_mode = false;
     TEST_ASSERT_EQUAL_INT(0, steer(25, 0));
     vehicle.angle_raw = 9000 + 600;
@@ -588,14 +562,14 @@ void test_the_slew_limit_starts_anew_when_the_eps_leaves_angle_control_again(voi
 /* A start at an angle of another time would turn the steering there. Only a slew limit has a start. */
 /* Shows: TOP-2 */
 void test_the_slew_limit_does_not_start_from_an_angle_that_is_out_of_date(void) {
-    angle_fresh = false;
+    facts.angle_fresh = false;
     TEST_ASSERT_TRUE(passes(AGV_MSG_STEERING_COMMAND, 0));
     config.steering_slew_ddeg_s = 4000;
     TEST_ASSERT_FALSE(passes(AGV_MSG_STEERING_COMMAND, 0));
     TEST_ASSERT_TRUE(passes(AGV_MSG_THROTTLE_COMMAND, 0));
     TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 1));
     TEST_ASSERT_TRUE(passes(AGV_MSG_TURN_SIGNAL_COMMAND, 0));
-    angle_fresh = true;
+    facts.angle_fresh = true;
     TEST_ASSERT_TRUE(passes(AGV_MSG_STEERING_COMMAND, 0));
 }
 
@@ -605,13 +579,13 @@ void test_a_slew_limit_that_has_started_needs_no_measured_angle(void) {
     config.steering_slew_ddeg_s = 4000;
     vehicle.eps_in_angle_mode = false;
     (void)steer(25, 0);
-    angle_fresh = false;
+    facts.angle_fresh = false;
     TEST_ASSERT_FALSE(passes(AGV_MSG_STEERING_COMMAND, 0));
     vehicle.eps_in_angle_mode = true;
     TEST_ASSERT_FALSE(passes(AGV_MSG_STEERING_COMMAND, 0));
-    angle_fresh = true;
+    facts.angle_fresh = true;
     (void)steer(25, 0);
-    angle_fresh = false;
+    facts.angle_fresh = false;
     TEST_ASSERT_TRUE(passes(AGV_MSG_STEERING_COMMAND, 0));
 }
 
@@ -619,7 +593,7 @@ void test_a_slew_limit_that_has_started_needs_no_measured_angle(void) {
 /* Shows: TOP-2, TIM-2 */
 void test_a_pause_gives_at_most_a_second_of_slew(void) {
     config.steering_slew_ddeg_s = 500;
-    now_ms = 0xFFFFFF00u;
+    facts.now_ms = 0xFFFFFF00u;
     vehicle.angle_raw = 0;
     TEST_ASSERT_EQUAL_INT(-9000, steer(0, -9000));
     TEST_ASSERT_EQUAL_INT(-8500, steer(1000, 9000));
@@ -692,7 +666,7 @@ void test_after_a_restart_the_slew_limit_starts_from_the_measured_angle(void) {
 /* Shows: TOP-2, SUP-10 */
 void test_while_driving_is_judged_the_mode_of_the_eps_does_not_restart_the_slew_limit(void) {
     config.steering_slew_ddeg_s = 4000;
-    judged = true;
+    facts.judged = true;
     TEST_ASSERT_EQUAL_INT(100, steer(0, 500));
     TEST_ASSERT_EQUAL_INT(200, steer(25, 500));
     vehicle.eps_in_angle_mode = false;
@@ -701,7 +675,7 @@ void test_while_driving_is_judged_the_mode_of_the_eps_does_not_restart_the_slew_
     vehicle.eps_in_angle_mode = true;
     TEST_ASSERT_EQUAL_INT(500, steer(25, 500));
     agv_gateway_restart(&gateway); /* the next engagement begins before the EPS takes angles */
-    judged = false;
+    facts.judged = false;
     vehicle.eps_in_angle_mode = false;
     TEST_ASSERT_EQUAL_INT(100, steer(25, 500));
     TEST_ASSERT_EQUAL_INT(100, steer(25, 500));
