@@ -35,30 +35,37 @@ build_host() {
     build host "${programs[@]}"
 }
 
-# Shards of a program, as many as there are processors, into $work/shard*.log. run_shards PROGRAM OPTION...
-run_shards() {
+# each_shard FUNCTION ARGUMENT...: runs FUNCTION I ARGUMENT... for each processor I, from 1, beside each other. Exit status 1 if
+# one of them fails.
+each_shard() {
     local i jobs pids=() status=0
     jobs=$(nproc)
-    for ((i = 0; i < jobs; i++)); do
-        "$1" --shard "$i/$jobs" "${@:2}" >"$work/shard$i.log" 2>&1 &
+    for ((i = 1; i <= jobs; i++)); do
+        "$1" "$i" "${@:2}" &
         pids+=($!)
     done
-    for i in "${!pids[@]}"; do
-        wait "${pids[i]}" || status=1
+    for i in "${pids[@]}"; do
+        wait "$i" || status=1
     done
-    for ((i = 0; i < jobs; i++)); do
-        cat "$work/shard$i.log"
-    done
+    return "$status"
+}
+
+shard_of_program() {
+    "$2" --shard "$(($1 - 1))/$(nproc)" "${@:3}" >"$work/shard$1.log" 2>&1
+}
+
+# Shards of a program, as many as there are processors, into $work/shard*.log. run_shards PROGRAM OPTION...
+run_shards() {
+    local status=0
+    rm -f "$work"/shard*.log
+    each_shard shard_of_program "$@" || status=1
+    cat "$work"/shard*.log
     return "$status"
 }
 
 # The last lines of all shards as one line: each number is the sum, except the first one, which is the same in all.
 add_up() {
-    local i logs=()
-    for ((i = 0; i < $(nproc); i++)); do
-        logs+=("$work/shard$i.log")
-    done
-    tail -q -n 1 "${logs[@]}" | awk '
+    tail -q -n 1 "$work"/shard*.log | awk '
         { for (i = 1; i <= NF; i++) {
               word[i] = $i
               if ($i ~ /^[0-9]+$/) { sum[i] = (i == 1) ? $i : sum[i] + $i } } }
