@@ -96,12 +96,12 @@ void why_init_check(why_t *why, uint64_t t_us) {
     }
 }
 
-/** What is missing now; if nothing is, what was within the time for which everything has to be there, a start apart. */
+/** What is missing now, or was within the time for which everything has to be there, a start apart. */
 void why_init_end(why_t *why, uint64_t t_us) {
     const uint64_t hold_us = ((uint64_t)why->config.init_hold_ms * US_PER_MS) + (2 * (uint64_t)CHECK_EVERY_US);
-    const uint32_t now_missing = missing_now(why, t_us);
-    uint32_t missing = now_missing;
-    for (size_t bit = 0; (bit < WHY_MISSING_BITS) && (now_missing == 0); bit++) {
+    uint32_t missing = missing_now(why, t_us);
+    why->lacking_at_end = (uint16_t)missing;
+    for (size_t bit = 0; bit < WHY_MISSING_BITS; bit++) {
         const uint64_t last_us = why->missing_us[bit];
         const bool counts = (last_us != WHY_NEVER) && (last_us > why->start_us + (uint64_t)FIRST_FRAMES_US);
         missing |= (counts && (last_us + hold_us >= t_us)) ? (1u << bit) : 0;

@@ -117,7 +117,8 @@ struct why {
     uint64_t now_us;
     uint64_t start_us;                     /**< of the supervisor */
     uint16_t missing;                      /* what kept it in INIT */
-    uint16_t lacking;                      /* the same, as of the end of INIT or of the run */
+    uint16_t lacking;                      /* the same, in the last init_hold_ms of INIT or of the run */
+    uint16_t lacking_at_end;               /* those of lacking that were still missing at its end */
     uint16_t startup_missing;              /* the same, as the supervisor said; 0: it did not */
     uint64_t missing_us[WHY_MISSING_BITS]; /* when each condition was missing last; WHY_NEVER */
     uint64_t init_due_us;                  /* when they are evaluated next */

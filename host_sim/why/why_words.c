@@ -391,6 +391,10 @@ void why_words_missing(text_t *text, const why_t *why, uint8_t bit) {
     if (((why->lacking >> bit) & 1) == 0) {
         return; /* it was there in the end: how it is now says nothing */
     }
+    if ((((why->lacking_at_end >> bit) & 1) == 0) && ((1u << bit) != AGV_MISSING_MANUAL)) {
+        text_add(text, "not all the time");
+        return;
+    }
     switch (1u << bit) {
     case AGV_MISSING_VCU_HEARTBEAT:
         say_no_beat(text, why, AGV_MSG_VEHICLE_STATUS);

@@ -49,6 +49,15 @@ class FiveLogs(Case):
         self.assertEqual(self.why(log)["not_supervised"], ["standstill", "manual"])
         self.assertEqual(self.why(log)["supervised_ms"], 0)
 
+    def test_what_flickers_at_the_end_is_missing_too(self):
+        def every_70_ms(frame):
+            return frame if frame.name != "vehicle_status" or frame.t_ms % 70 < 10 else None
+        log = traffic.log(traffic.frames(8000, edit=every_70_ms))
+        self.assertEqual(self.text(log)[:2], [
+            "NOT SUPERVISED: never left INIT, missing: vcu_heartbeat (not all the time), trip_cause (not all the",
+            "                time), standstill (not all the time)"])
+        self.assertEqual(set(self.why(log)["not_supervised"]), {"vcu_heartbeat", "trip_cause", "standstill"})
+
     def test_the_other_id_set(self):
         log = traffic.log(traffic.frames(5000, ids=traffic.TABLE_IDS))
         lines = self.text(log, "--fail-on-trip", status=1)
