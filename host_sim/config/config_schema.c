@@ -11,6 +11,7 @@
 #include "io/yaml_schema.h"
 #include "text/words.h"
 
+#define NO_BIT "^0+h?$|^0x0+$"
 #define TIME "^[0-9]+(\\.[0-9]+)? ?(us|ms|s|min|h|d)$"
 
 enum { DESCRIPTION_SIZE = 400 };
@@ -36,7 +37,13 @@ static json_t *words_of(const agv_setting_info_t *info) {
 static json_t *number_of(const agv_setting_info_t *info) {
     const yaml_shape_t identifier = {.kind = YAML_KIND_HEX, .highest = info->highest}; /* decimal is an integer */
     if (config_is_id(info)) {
-        return yaml_schema(&identifier);
+        json_t *schema = yaml_schema(&identifier);
+        if (info->lowest > 0) {
+            json_t *none =
+                json_pack("{s:[{s:i}, {s:s, s:s}]}", "anyOf", "const", 0, "type", "string", "pattern", NO_BIT);
+            (void)json_object_set_new(schema, "not", none);
+        }
+        return schema;
     }
     json_t *number =
         json_pack("{s:s, s:i, s:i}", "type", "integer", "minimum", (int)info->lowest, "maximum", (int)info->highest);

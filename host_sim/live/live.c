@@ -191,19 +191,20 @@ static void write_out(live_t *live, uint64_t now_ms) {
     }
 }
 
-/** Run until a signal comes, or the time is over. A signal ends it before another call of the core. */
+/** Run until a signal comes, or a tick at the end of the time or later. A signal ends it before another call of the core. */
 static bool run(live_t *live) {
     const uint64_t end_ms =
         (live->request->bus.for_ms == INTERFACE_UNTIL_SIGNAL) ? UINT64_MAX : live->request->bus.for_ms;
     uint64_t now_ms = 0;
     bool good = true;
+    bool is_over = false;
     monitor_companion_show(&live->screen);
     node_start(live->node);
-    while (good && (now_ms < end_ms)) {
+    while (good && !is_over) {
         write_out(live, now_ms);
         const uint32_t what = linux_loop_wait(&live->loop);
         now_ms = node_now_us(live->node) / US_PER_MS;
-        if (((what & LINUX_LOOP_SIGNAL) != 0) || interrupt_pending() || (now_ms >= end_ms)) {
+        if (((what & LINUX_LOOP_SIGNAL) != 0) || interrupt_pending()) {
             break;
         }
         if ((what & LINUX_LOOP_TICK) == 0) {
@@ -211,6 +212,7 @@ static bool run(live_t *live) {
         } else if (node_tick(live->node)) {
             good = live_files_follow(&live->files, &live->loop, live->node);
         }
+        is_over = ((what & LINUX_LOOP_TICK) != 0) && (now_ms >= end_ms);
     }
     return good;
 }

@@ -97,12 +97,15 @@ static bool fill(candump_log_t *log) {
     const char *wrong = NULL;
     const ssize_t count =
         gunzip_read(&log->gunzip, read_file, log, &log->buffer[log->end], CANDUMP_BUFFER_SIZE - log->end, &wrong);
-    if (count < 0) {
-        return (wrong != NULL) && report("%s: %s", log->name, wrong);
+    if ((count < 0) && log->gunzip.is_cut_off && log->skip_bad) {
+        note("%s: %s; read up to there", log->name, wrong);
+    } else if (count < 0) {
+        const char *way = log->gunzip.is_cut_off ? "; --skip-bad-lines reads up to there" : "";
+        return (wrong != NULL) && report("%s: %s%s", log->name, wrong, way);
     }
-    log->at_end = count == 0;
-    log->end += (size_t)count;
-    log->frameless += (size_t)count;
+    log->at_end = count <= 0;
+    log->end += (count > 0) ? (size_t)count : 0;
+    log->frameless += (count > 0) ? (size_t)count : 0;
     const bool is_known = log->format != CANDUMP_FORMAT_UNKNOWN;
     const uint64_t most = is_known ? CANDUMP_FRAMELESS_MAX : CANDUMP_UNKNOWN_MAX;
     if (log->frameless > most) {

@@ -86,6 +86,7 @@ static ssize_t read_packed(gunzip_t *gunzip, gunzip_source_fn *source, void *ctx
                 return (ssize_t)count;
             }
         } else if (gunzip->at_end) {
+            gunzip->is_cut_off = gunzip->in_member;
             *wrong = gunzip->in_member ? "the gzip file is cut off" : NULL;
             return gunzip->in_member ? -1 : 0;
         } else if (!refill(gunzip, source, ctx)) {

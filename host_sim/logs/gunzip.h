@@ -22,6 +22,7 @@ typedef struct {
     bool is_packed;
     bool at_end;    /**< of the source */
     bool in_member; /**< within a compressed file: the end of the source would cut it off */
+    bool is_cut_off;
     z_stream stream;
     size_t begin; /**< of the bytes that were read but not used, in `buffer` */
     size_t end;

@@ -123,6 +123,8 @@ const log_foreign_t *log_foreign_text(const char *line, size_t length) {
     };
     static const log_foreign_t plain_screen = {"candump's screen form without time stamps",
                                                "record it again: candump -l can0"};
+    static const log_foreign_t colours = {"text with colour codes, as candump -c shows it",
+                                          "remove them: sed 's/\\x1B\\[[0-9;]*m//g' @ > @.log"};
     static const log_foreign_t old_trc = {"a PEAK TRC log", CAN_LOGCONVERT};
     static const log_foreign_t csv = {"a CSV file",
                                       "make it one line a frame: (seconds.micros) can0 43F#0000000000000011"};
@@ -130,6 +132,9 @@ const log_foreign_t *log_foreign_text(const char *line, size_t length) {
         if ((length >= beginnings[i].size) && (strncasecmp(line, beginnings[i].bytes, beginnings[i].size) == 0)) {
             return &beginnings[i].format;
         }
+    }
+    if (memchr(line, '\x1B', length) != NULL) {
+        return &colours;
     }
     if (is_old_trc(line, length)) {
         return &old_trc;

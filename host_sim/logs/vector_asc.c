@@ -57,8 +57,8 @@ static bool time_of_day(log_token_t token, civil_t *civil, uint64_t *fraction_us
     return good && (us / US_PER_S <= BYTE_MAX);
 }
 
-/** Read "Fri Nov 20 10:32:04.100 am 2026"; what is no date leaves the start as it is. */
-static void take_date(vector_asc_t *asc, rest_t rest) {
+/** Read "Fri Nov 20 10:32:04.100 am 2026"; what is no date leaves @p date_us as it is. */
+static void take_date(rest_t rest, uint64_t *date_us) {
     civil_t civil = {0};
     uint64_t fraction_us = 0;
     uint64_t seconds = 0;
@@ -73,7 +73,7 @@ static void take_date(vector_asc_t *asc, rest_t rest) {
         token = next(&rest);
     }
     if (good && log_token_number(token, DECIMAL, UINT16_MAX, &civil.year) && civil_seconds(&civil, &seconds)) {
-        asc->start_us = (seconds * US_PER_S) + fraction_us;
+        *date_us = (seconds * US_PER_S) + fraction_us;
     }
 }
 
@@ -95,7 +95,7 @@ static const char *take_base(vector_asc_t *asc, rest_t rest) {
 }
 
 /** The lines that have no time stamp. */
-typedef enum { LINE_DATE, LINE_BASE, LINE_OTHER, LINE_UNKNOWN } header_t;
+typedef enum { LINE_DATE, LINE_BLOCK, LINE_BASE, LINE_OTHER, LINE_UNKNOWN } header_t;
 
 static header_t header_of(log_token_t first, log_token_t second) {
     static const struct {
@@ -103,7 +103,7 @@ static header_t header_of(log_token_t first, log_token_t second) {
         const char *second; /**< NULL: any */
         header_t header;
     } headers[] = {{"date", NULL, LINE_DATE},      {"base", NULL, LINE_BASE},   {"no", "internal", LINE_OTHER},
-                   {"internal", NULL, LINE_OTHER}, {"Begin", NULL, LINE_OTHER}, {"End", NULL, LINE_OTHER},
+                   {"internal", NULL, LINE_OTHER}, {"Begin", NULL, LINE_BLOCK}, {"End", NULL, LINE_OTHER},
                    {"previous", "log", LINE_OTHER}};
     for (size_t i = 0; i < sizeof headers / sizeof headers[0]; i++) {
         if (log_token_is(first, headers[i].first) &&
@@ -298,7 +298,11 @@ static const char *take_status(vector_asc_t *asc, rest_t *rest, candump_record_t
 static const char *take_header(vector_asc_t *asc, log_token_t first, rest_t *rest) {
     switch (header_of(first, peek(rest))) {
     case LINE_DATE:
-        take_date(asc, *rest);
+        take_date(*rest, &asc->start_us);
+        return LOG_NO_FRAME;
+    case LINE_BLOCK:
+        (void)next(rest); /* "Triggerblock" */
+        take_date(*rest, &asc->block_us);
         return LOG_NO_FRAME;
     case LINE_BASE:
         return take_base(asc, *rest);
@@ -329,6 +333,9 @@ const char *vector_asc_parse(vector_asc_t *asc, const char *line, size_t length,
     }
     if (log_token_is(kind, "CAN")) {
         return take_status(asc, &rest, record);
+    }
+    if (log_token_is(kind, "Start") && (us == 0) && (asc->block_us != 0)) {
+        asc->start_us = asc->block_us;
     }
     if (log_token_number(kind, DECIMAL, CHANNEL_MAX, &channel)) {
         return take_channel_event(asc, kind, &rest, record);

@@ -5,7 +5,9 @@
  *
  * Read are data, remote and error frames, CAN FD lines, and the state of the controller ("CAN 1 Status: ..."). Header
  * ("base hex|dec", "timestamps absolute|relative"), comments and all other events are passed over. Channel n is the
- * interface can<n-1>, as in can-utils and python-can. The date of the header counts as UTC; without one, time begins at 0.
+ * interface can<n-1>, as in can-utils and python-can. The date counts as UTC; without one, time begins at 0. It is that of the
+ * header, or that of a "Begin Triggerblock" behind which "0.0 Start of measurement" stands (python-can's header has the time
+ * of the conversion).
  */
 #ifndef HOST_SIM_VECTOR_ASC_H
 #define HOST_SIM_VECTOR_ASC_H
@@ -18,7 +20,8 @@
 
 /** What has been read so far. All zero: nothing. */
 typedef struct {
-    uint64_t start_us; /**< the date of the header */
+    uint64_t start_us; /**< the date of time 0 */
+    uint64_t block_us; /**< the date of the last "Begin Triggerblock"; 0: none */
     uint64_t last_us;  /**< relative time stamps: of the last line, since the start */
     bool has_base;     /**< a line "base ..." was read, or its absence noted: hexadecimal, absolute */
     bool is_decimal;   /**< identifiers and data are decimal numbers */

@@ -240,10 +240,14 @@ static bool hint_sides(text_t *text, const replay_clues_t *clues) {
     const uint32_t status = interfaces_of(clues, false);
     const uint32_t other_commands = interfaces_of(clues, true) & ~ai_side;
     if ((clues->config->topology != AGV_TOPOLOGY_GATEWAY) || (why_supervised_us(clues->why) > 0) ||
-        (other_commands == 0)) {
+        ((other_commands | (status & ai_side)) == 0)) {
         return false;
     }
-    if ((status != 0) && (status == ai_side) && is_single(other_commands)) {
+    if (other_commands == 0) {
+        text_add(text,
+                 "status messages come on %s, which is the AI side: for the log of a shared bus leave out --ai-if",
+                 clues->ai_interface);
+    } else if ((status != 0) && (status == ai_side) && is_single(other_commands)) {
         text_add(text, "the sides are swapped (status messages come on %s): --ai-if ", clues->ai_interface);
         add_interfaces(text, clues->heard, other_commands);
     } else {

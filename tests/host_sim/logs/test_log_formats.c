@@ -192,6 +192,24 @@ void test_vector_asc(void) {
     expect_end();
 }
 
+/* As python-can writes it: the header has the time of the conversion. A block without a start of measurement changes nothing. */
+void test_vector_asc_begins_at_the_date_of_its_first_block(void) {
+    open_text("date Sun Nov 29 05:42:11.000 PM 2026\n"
+              "base hex  timestamps absolute\n"
+              "Begin Triggerblock Tue Nov 14 10:13:20.500 PM 2023\n"
+              "   0.000000 Start of measurement\n"
+              "   0.000001 1  43F             Rx   d 1 11\n"
+              "End TriggerBlock\n"
+              "Begin Triggerblock Tue Nov 14 10:13:30.500 PM 2023\n"
+              "   10.00000 1  43F             Rx   d 1 22\n"
+              "   11.00000 Start of measurement\n"
+              "   12.00000 1  43F             Rx   d 1 33\n");
+    expect(1700000000500001, "can0", 0x43F, 0, 1, 0x1100000000000000);
+    expect(1700000010500000, "can0", 0x43F, 0, 1, 0x2200000000000000);
+    expect(1700000012500000, "can0", 0x43F, 0, 1, 0x3300000000000000);
+    expect_end();
+}
+
 void test_vector_asc_in_decimal_with_relative_times(void) {
     open_text("date Mit Okt 14 21:46:40 2026\n"
               "base dec  timestamps relative\n"
@@ -301,8 +319,15 @@ void test_compressed_data_that_is_cut_off_or_damaged(void) {
     const size_t size = pack(LINE LINE LINE, packed, sizeof packed);
     for (size_t cut = 3; cut < size; cut++) {
         open_bytes(packed, cut);
-        expect_failure("log: the gzip file is cut off");
+        expect_failure("log: the gzip file is cut off; --skip-bad-lines reads up to there");
     }
+    open_bytes(packed, size - 1);
+    log_file->skip_bad = true;
+    for (size_t i = 0; i < 3; i++) {
+        expect(1000000, "can0", 0x43F, 0, 8, 0x11);
+    }
+    TEST_ASSERT_EQUAL_INT(CANDUMP_END, candump_next(log_file, &record));
+    (void)scratch_said_line("log: the gzip file is cut off; read up to there");
     packed[size - 5] ^= 1; /* of the checksum */
     open_bytes(packed, size);
     expect_failure("log: the gzip data is damaged");
@@ -357,6 +382,7 @@ void test_other_formats_are_named_with_what_converts_them(void) {
         {"timestamp,arbitration_id,extended\n", 34, "a CSV log of python-can", "python3 -m can.logconvert"},
         {"Time Stamp,ID,Extended,Dir,Bus\n", 31, "a CSV log of SavvyCAN", "SavvyCAN"},
         {"1;2;3;4\n", 8, "a CSV file", "one line a frame"},
+        {" (000.000000)  \x1B[34mcan0\n", 25, "colour codes", "sed "},
         {"  can0  43F   [1]  00\n", 22, "without time stamps", "candump -l"},
     };
     for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {

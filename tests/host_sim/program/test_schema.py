@@ -142,6 +142,11 @@ class Schemas(hostsim.Case):
             text = BASE.replace("id: 168h", "id: " + identifier)
             self.assertEqual((self.is_valid("scenario", text), self.refusal("scenario", text) == ""), (good, good), identifier)
 
+    def test_a_message_has_an_identifier(self):
+        for text, good in (("id_gear_command: 0", False), ("id_gear_command: 000h", False), ("id_gear_command: 0x0", False),
+                           ("id_gear_command: 169h", True), ("status_frame_id: 0", True)):
+            self.assertEqual((self.is_valid("config", text), self.refusal("config", text) == ""), (good, good), text)
+
     def test_every_difference_is_one(self):
         for name, (old, new, said) in MEANING.items():
             with self.subTest(name):

@@ -156,13 +156,16 @@ void test_what_init_lacked(void) {
     TEST_ASSERT_EQUAL_UINT64(0, why_supervised_us(why));
 }
 
-void test_what_init_lacked_is_what_the_supervisor_says(void) {
+/* The supervisor names what held at 10 s; the traffic names what held at the end. */
+void test_what_init_lacked_is_what_supervisor_and_traffic_say(void) {
     const session_event_t startup = {
         .t_ms = 10001, .recorded = {.kind = AGV_EVENT_STARTUP, .missing = AGV_MISSING_OUTPUT | AGV_MISSING_MANUAL}};
     feed_state(why, 0, AGV_STATE_INIT, AGV_FAULT_NONE, 0);
     why_event(why, &startup);
     why_end(why, 11000000);
-    TEST_ASSERT_EQUAL_HEX16(AGV_MISSING_OUTPUT | AGV_MISSING_MANUAL, why_missing(why));
+    TEST_ASSERT_EQUAL_HEX16(AGV_MISSING_OUTPUT | AGV_MISSING_MANUAL | AGV_MISSING_VCU_HEARTBEAT |
+                                AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_STANDSTILL | AGV_MISSING_MESSAGES,
+                            why_missing(why));
 }
 
 static const char *pending(agv_fault_t fault) {

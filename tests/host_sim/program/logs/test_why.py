@@ -166,6 +166,10 @@ class FiveLogs(Case):
                          ["  hint      the sides are swapped (status messages come on can0): --ai-if can1"])
         self.assertFalse(self.text(log, "--ai-if", "can1")[0].startswith("NOT SUPERVISED"))
 
+    def test_a_shared_bus_is_named_as_the_ai_side(self):
+        lines = self.text(traffic.log(traffic.frames(3000)), "--ai-if", "can0")
+        self.assertIn("  hint      status messages come on can0, which is the AI side: for the log of a shared bus leave", lines)
+
     def test_a_log_that_ends_in_the_middle_of_a_fault(self):
         frames = traffic.frames(3000, engage_ms=1000, edit=stop(("steering_command",), 2910))
         lines = self.text(traffic.log(frames))
