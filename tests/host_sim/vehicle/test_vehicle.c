@@ -31,6 +31,11 @@ static void drive(uint64_t until_ms, uint8_t throttle) {
     }
 }
 
+static void expect_alarms_at(uint64_t t_ms, uint8_t alarms) {
+    run_until(t_ms);
+    TEST_ASSERT_EQUAL_HEX8(alarms, look().alarms);
+}
+
 /* Shows: P16 */
 void test_every_message_is_sent_on_its_cycle_by_its_node(void) {
     run_until(1000);
@@ -145,8 +150,7 @@ void test_with_the_guard_it_brakes_before_it_parks(void) {
     run_until(3300); /* 134 ms to 0.8 m/s, 120 ms to shift */
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, look().gear);
     TEST_ASSERT_LESS_THAN_INT32(800, look().fastest_park_mm_s);
-    run_until(4000);
-    TEST_ASSERT_EQUAL_INT32(0, look().speed_mm_s);
+    expect_speed_at(4000, 0);
 }
 
 void test_without_the_guard_it_parks_at_speed(void) {
@@ -154,15 +158,13 @@ void test_without_the_guard_it_parks_at_speed(void) {
     begin();
     drive(3000, 75);
     command(AGV_MSG_GEAR_COMMAND, AGV_GEAR_P, 0);
-    run_until(3130);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, look().gear);
+    expect_gear_at(3130, AGV_GEAR_P);
     TEST_ASSERT_GREATER_THAN_INT32(1100, look().fastest_park_mm_s);
 }
 
 void test_reverse_goes_backwards(void) {
     (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_DRIVE, .gear = AGV_GEAR_R, .throttle_permille = 200});
-    run_until(3000);
-    TEST_ASSERT_EQUAL_INT32(-800, look().speed_mm_s);
+    expect_speed_at(3000, -800);
 }
 
 void test_autopilot_off_ends_autopilot_mode_and_holds_for_300_ms(void) {
@@ -170,8 +172,7 @@ void test_autopilot_off_ends_autopilot_mode_and_holds_for_300_ms(void) {
     command_signals(AUTOPILOT_OFF, 1);
     TEST_ASSERT_FALSE(look().autopilot);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear); /* that is another command's */
-    run_until(3061);
-    TEST_ASSERT_EQUAL_UINT16(0, look().throttle_permille);
+    expect_throttle_at(3061, 0);
     run_until(3299);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_ENGAGE});
     TEST_ASSERT_FALSE(look().autopilot);
@@ -187,42 +188,35 @@ void test_in_manual_it_obeys_park_and_nothing_else(void) {
     run_until(3000);
     command(AGV_MSG_GEAR_COMMAND, AGV_GEAR_R, 0);
     command(AGV_MSG_THROTTLE_COMMAND, 250, 0);
-    run_until(4000);
-    TEST_ASSERT_EQUAL_INT32(800, look().speed_mm_s);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
+    expect_speed_at(4000, 800);
+    expect_gear_at(4000, AGV_GEAR_D);
     command(AGV_MSG_GEAR_COMMAND, AGV_GEAR_P, 0);
-    run_until(4200);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, look().gear);
+    expect_gear_at(4200, AGV_GEAR_P);
     run_until(4290); /* as long as P is commanded the remote controller moves nothing */
     (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 200});
-    run_until(5000);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, look().gear);
+    expect_gear_at(5000, AGV_GEAR_P);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 200});
-    run_until(6000);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
+    expect_gear_at(6000, AGV_GEAR_D);
 }
 
 void test_commands_out_of_range_are_not_obeyed(void) {
     drive(3000, 75);
     command(AGV_MSG_GEAR_COMMAND, 3, 0);
     command(AGV_MSG_THROTTLE_COMMAND, 251, 0);
-    run_until(3010);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
-    TEST_ASSERT_EQUAL_UINT16(300, look().throttle_permille);
+    expect_gear_at(3010, AGV_GEAR_D);
+    expect_throttle_at(3010, 300);
 }
 
 void test_short_frames_are_obeyed_only_where_the_vehicle_does_so(void) {
     hal_can_frame_t frame = {.id = 0x168u, .length = 1, .data = {AGV_GEAR_P}};
     drive(3000, 20);
     vehicle_receive(&vehicle, VEHICLE_VCU, now_ms, &frame);
-    run_until(3200);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
+    expect_gear_at(3200, AGV_GEAR_D);
     config.obeys_short_frames = true;
     begin();
     drive(3000, 20);
     vehicle_receive(&vehicle, VEHICLE_VCU, now_ms, &frame);
-    run_until(3200);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, look().gear);
+    expect_gear_at(3200, AGV_GEAR_P);
 }
 
 void test_what_is_no_classic_data_frame_is_not_heard(void) {
@@ -230,8 +224,7 @@ void test_what_is_no_classic_data_frame_is_not_heard(void) {
     drive(3000, 20);
     vehicle_receive(&vehicle, VEHICLE_VCU, now_ms, &frame);
     vehicle_receive(&vehicle, VEHICLE_NODES, now_ms, &frame);
-    run_until(3200);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
+    expect_gear_at(3200, AGV_GEAR_D);
 }
 
 /* Shows: P18 */
@@ -269,31 +262,25 @@ void test_in_assist_the_driver_steers(void) {
 
 void test_the_vcu_raises_its_own_alarms(void) {
     connected = true;
-    run_until(500);
-    TEST_ASSERT_EQUAL_HEX8(0, look().alarms);
+    expect_alarms_at(500, 0);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_STOP, .node = VEHICLE_AI});  /* last 43Fh at 409 */
     (void)act((vehicle_action_t){.what = VEHICLE_DO_STOP, .node = VEHICLE_EPS}); /* last 067h at 491 */
-    run_until(591);
-    TEST_ASSERT_EQUAL_HEX8(AGV_VCU_ALARM_EPS_CAN_BUS, look().alarms);
-    run_until(1409);
-    TEST_ASSERT_EQUAL_HEX8(AGV_VCU_ALARM_EPS_CAN_BUS | AGV_VCU_ALARM_AI_CAN_LOST, look().alarms);
+    expect_alarms_at(591, AGV_VCU_ALARM_EPS_CAN_BUS);
+    expect_alarms_at(1409, AGV_VCU_ALARM_EPS_CAN_BUS | AGV_VCU_ALARM_AI_CAN_LOST);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_START, .node = VEHICLE_AI});
     (void)act((vehicle_action_t){.what = VEHICLE_DO_START, .node = VEHICLE_EPS});
     (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_SIGNAL, .on = false});
     (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_POWER, .on = false});
-    run_until(1600);
-    TEST_ASSERT_EQUAL_HEX8(AGV_VCU_ALARM_REMOTE_SIGNAL_LOST | AGV_VCU_ALARM_REMOTE_POWER_LOST, look().alarms);
-    TEST_ASSERT_EQUAL_HEX8(0x03u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[4]);
+    expect_alarms_at(1600, AGV_VCU_ALARM_REMOTE_SIGNAL_LOST | AGV_VCU_ALARM_REMOTE_POWER_LOST);
+    expect_byte_at(1600, AGV_MSG_VEHICLE_STATUS, 4, 0x03u);
 }
 
 void test_the_vcu_hears_of_faults_of_the_eps(void) {
     connected = true;
     patch(AGV_MSG_EPS_STATUS, 7, 0xFFu, AGV_EPS_FAULT_TEMP_ABOVE_110, VEHICLE_FOREVER, 0);
-    run_until(100);
-    TEST_ASSERT_EQUAL_HEX8(0, look().alarms);
+    expect_alarms_at(100, 0);
     patch(AGV_MSG_EPS_STATUS, 7, 0xFFu, AGV_EPS_FAULT_OVER_VOLTAGE, VEHICLE_FOREVER, 0);
-    run_until(200);
-    TEST_ASSERT_EQUAL_HEX8(AGV_VCU_ALARM_EPS_HARDWARE, look().alarms);
+    expect_alarms_at(200, AGV_VCU_ALARM_EPS_HARDWARE);
 }
 
 void test_without_the_ai_computer_the_vcu_takes_the_throttle_away(void) {
@@ -303,8 +290,7 @@ void test_without_the_ai_computer_the_vcu_takes_the_throttle_away(void) {
         run_until(now_ms + 10);
     }
     TEST_ASSERT_EQUAL_UINT16(300, look().throttle_permille);
-    run_until(3970);
-    TEST_ASSERT_EQUAL_UINT16(0, look().throttle_permille);
+    expect_throttle_at(3970, 0);
     TEST_ASSERT_TRUE(look().autopilot);
 }
 
@@ -312,8 +298,7 @@ void test_a_lost_remote_controller_brakes_in_manual(void) {
     (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 200});
     run_until(3000);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_SIGNAL, .on = false});
-    run_until(3300);
-    TEST_ASSERT_EQUAL_INT32(0, look().speed_mm_s);
+    expect_speed_at(3300, 0);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_SIGNAL, .on = true});
     run_until(5000); /* it does not drive off by itself */
     TEST_ASSERT_EQUAL_INT32(0, look().speed_mm_s);
@@ -322,40 +307,33 @@ void test_a_lost_remote_controller_brakes_in_manual(void) {
 void test_the_buttons_reach_363h_while_the_remote_controller_is_heard(void) {
     (void)act((vehicle_action_t){.what = VEHICLE_DO_BUTTON, .count = 1, .on = true});
     (void)act((vehicle_action_t){.what = VEHICLE_DO_BUTTON, .count = 2, .on = true});
-    run_until(11);
-    TEST_ASSERT_EQUAL_HEX8(0x43u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
+    expect_byte_at(11, AGV_MSG_VEHICLE_STATUS, 6, 0x43u);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_POWER, .on = false});
-    run_until(21);
-    TEST_ASSERT_EQUAL_HEX8(0x40u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
+    expect_byte_at(21, AGV_MSG_VEHICLE_STATUS, 6, 0x40u);
 }
 
 void test_turn_signals_are_reported_back(void) {
     command_signals(0x30u, 1);
-    run_until(11);
-    TEST_ASSERT_EQUAL_HEX8(0x70u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
+    expect_byte_at(11, AGV_MSG_VEHICLE_STATUS, 6, 0x70u);
 }
 
 void test_the_ai_computer_drives_only_while_engaged_unless_it_is_stubborn(void) {
     connected = true;
     (void)act((vehicle_action_t){
         .what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_R, .throttle_permille = 1000, .angle_ddeg = 100});
-    run_until(200);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_N, last_of(AGV_MSG_GEAR_COMMAND)->frame.data[0]);
+    expect_byte_at(200, AGV_MSG_GEAR_COMMAND, 0, AGV_GEAR_N);
     TEST_ASSERT_EQUAL_UINT8(0, last_of(AGV_MSG_THROTTLE_COMMAND)->frame.data[0]);
     TEST_ASSERT_EQUAL_HEX8(0x28u, last_of(AGV_MSG_STEERING_COMMAND)->frame.data[0]);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_STUBBORN, .on = true});
-    run_until(400);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_R, last_of(AGV_MSG_GEAR_COMMAND)->frame.data[0]);
+    expect_byte_at(400, AGV_MSG_GEAR_COMMAND, 0, AGV_GEAR_R);
     TEST_ASSERT_EQUAL_UINT8(250, last_of(AGV_MSG_THROTTLE_COMMAND)->frame.data[0]);
     TEST_ASSERT_EQUAL_HEX8(0x8Cu, last_of(AGV_MSG_STEERING_COMMAND)->frame.data[0]);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_STUBBORN, .on = false});
     (void)act((vehicle_action_t){.what = VEHICLE_DO_ENGAGE});
-    run_until(600);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_R, last_of(AGV_MSG_GEAR_COMMAND)->frame.data[0]);
+    expect_byte_at(600, AGV_MSG_GEAR_COMMAND, 0, AGV_GEAR_R);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_IDLE});
     (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_AUTOPILOT_OFF, .on = true});
-    run_until(800);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_N, last_of(AGV_MSG_GEAR_COMMAND)->frame.data[0]);
-    TEST_ASSERT_EQUAL_HEX8(0x40u, last_of(AGV_MSG_TURN_SIGNAL_COMMAND)->frame.data[4]);
+    expect_byte_at(800, AGV_MSG_GEAR_COMMAND, 0, AGV_GEAR_N);
+    expect_byte_at(800, AGV_MSG_TURN_SIGNAL_COMMAND, 4, 0x40u);
     TEST_ASSERT_FALSE(look().autopilot);
 }

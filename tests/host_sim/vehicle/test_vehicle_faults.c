@@ -15,19 +15,20 @@ static size_t count_from(vehicle_node_t node, size_t first) {
     return count;
 }
 
+static void expect_sent_at(uint64_t t_ms, vehicle_node_t node, size_t first, size_t count) {
+    run_until(t_ms);
+    TEST_ASSERT_EQUAL_size_t(count, count_from(node, first));
+}
+
 void test_nodes_start_when_they_are_told(void) {
     config.start_ms[VEHICLE_EPS] = 100;
     config.start_ms[VEHICLE_AI] = VEHICLE_NEVER;
     begin();
-    run_until(100);
-    TEST_ASSERT_EQUAL_size_t(0, count_from(VEHICLE_EPS, 0));
-    run_until(102);
-    TEST_ASSERT_EQUAL_size_t(1, count_from(VEHICLE_EPS, 0));
-    run_until(1000);
-    TEST_ASSERT_EQUAL_size_t(0, count_from(VEHICLE_AI, 0));
+    expect_sent_at(100, VEHICLE_EPS, 0, 0);
+    expect_sent_at(102, VEHICLE_EPS, 0, 1);
+    expect_sent_at(1000, VEHICLE_AI, 0, 0);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_START, .node = VEHICLE_AI});
-    run_until(1010);
-    TEST_ASSERT_EQUAL_size_t(2, count_from(VEHICLE_AI, 0));
+    expect_sent_at(1010, VEHICLE_AI, 0, 2);
     TEST_ASSERT_TRUE(look().running[VEHICLE_AI]);
 }
 
@@ -36,8 +37,7 @@ void test_a_node_that_stops_neither_sends_nor_hears(void) {
     (void)act((vehicle_action_t){.what = VEHICLE_DO_STOP, .node = VEHICLE_VCU});
     const size_t first = sent_count;
     command(AGV_MSG_GEAR_COMMAND, AGV_GEAR_P, 0);
-    run_until(200);
-    TEST_ASSERT_EQUAL_size_t(0, count_from(VEHICLE_VCU, first));
+    expect_sent_at(200, VEHICLE_VCU, first, 0);
     TEST_ASSERT_GREATER_THAN_size_t(0, count_from(VEHICLE_EPS, first));
     TEST_ASSERT_FALSE(look().running[VEHICLE_VCU]);
 }
@@ -47,17 +47,14 @@ void test_a_restarted_vcu_begins_anew(void) {
     (void)act((vehicle_action_t){.what = VEHICLE_DO_ENGAGE}); /* before its start: nobody hears it */
     run_until(10);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_ENGAGE});
-    run_until(3000);
-    TEST_ASSERT_EQUAL_INT32(1200, look().speed_mm_s);
+    expect_speed_at(3000, 1200);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_RESTART, .node = VEHICLE_VCU, .ms = 500});
     const size_t first = sent_count;
-    run_until(3500);
-    TEST_ASSERT_EQUAL_size_t(0, count_from(VEHICLE_VCU, first));
+    expect_sent_at(3500, VEHICLE_VCU, first, 0);
     run_until(3510);
     TEST_ASSERT_EQUAL_UINT8(0, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7]);
     TEST_ASSERT_EQUAL_HEX8(0x40u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
-    run_until(3800);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_N, look().gear);
+    expect_gear_at(3800, AGV_GEAR_N);
     TEST_ASSERT_LESS_THAN_INT32(1100, look().speed_mm_s); /* it coasted meanwhile */
 }
 
@@ -79,16 +76,14 @@ void test_lag_and_period_stretch_the_cycle(void) {
     (void)act((vehicle_action_t){.what = VEHICLE_DO_PERIOD, .message = AGV_MSG_GEAR_COMMAND, .ms = 20});
     run_until(200);
     const size_t first = sent_count;
-    run_until(1200);
-    TEST_ASSERT_EQUAL_size_t(50, count_of(AGV_MSG_EPS_STATUS, first));
-    TEST_ASSERT_EQUAL_size_t(50, count_of(AGV_MSG_GEAR_COMMAND, first));
-    TEST_ASSERT_EQUAL_size_t(10, count_of(AGV_MSG_THROTTLE_COMMAND, first));
+    expect_count_at(1200, AGV_MSG_EPS_STATUS, first, 50);
+    expect_count_at(1200, AGV_MSG_GEAR_COMMAND, first, 50);
+    expect_count_at(1200, AGV_MSG_THROTTLE_COMMAND, first, 10);
 }
 
 void test_repeated_frames_are_the_same_frames(void) {
     (void)act((vehicle_action_t){.what = VEHICLE_DO_REPEAT, .node = VEHICLE_EPS, .count = 2});
-    run_until(2);
-    TEST_ASSERT_EQUAL_size_t(3, count_of(AGV_MSG_STEERING_STATUS, 0));
+    expect_count_at(2, AGV_MSG_STEERING_STATUS, 0, 3);
     TEST_ASSERT_EQUAL_MEMORY(&sent[sent_count - 1].frame, &sent[sent_count - 3].frame, sizeof(hal_can_frame_t));
 }
 
@@ -125,35 +120,27 @@ void test_garbage_of_each_kind(void) {
     TEST_ASSERT_EQUAL_UINT8(AGV_DLC, before.length);
     TEST_ASSERT_FALSE(memcmp(before.data, last_of(AGV_MSG_STEERING_POSITION)->frame.data, AGV_DLC) == 0);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_RECOVER, .node = VEHICLE_EPS});
-    run_until(1040);
-    TEST_ASSERT_EQUAL_HEX8(0x80u, last_of(AGV_MSG_STEERING_POSITION)->frame.data[0]);
+    expect_byte_at(1040, AGV_MSG_STEERING_POSITION, 0, 0x80u);
 }
 
 void test_a_message_is_muted_for_so_many_frames(void) {
     (void)act((vehicle_action_t){.what = VEHICLE_DO_MUTE, .message = AGV_MSG_EPS_STATUS, .count = 3});
-    run_until(100);
-    TEST_ASSERT_EQUAL_size_t(7, count_of(AGV_MSG_EPS_STATUS, 0));
+    expect_count_at(100, AGV_MSG_EPS_STATUS, 0, 7);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_MUTE, .message = AGV_MSG_EPS_STATUS, .count = VEHICLE_FOREVER});
-    run_until(1000);
-    TEST_ASSERT_EQUAL_size_t(7, count_of(AGV_MSG_EPS_STATUS, 0));
+    expect_count_at(1000, AGV_MSG_EPS_STATUS, 0, 7);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_UNMUTE, .message = AGV_MSG_EPS_STATUS});
-    run_until(1010);
-    TEST_ASSERT_EQUAL_size_t(8, count_of(AGV_MSG_EPS_STATUS, 0));
+    expect_count_at(1010, AGV_MSG_EPS_STATUS, 0, 8);
 }
 
 void test_a_field_keeps_a_value_for_so_many_frames(void) {
     patch(AGV_MSG_VEHICLE_STATUS, 6, 0xC0u, 0xC0u, 2, 0);
-    run_until(20);
-    TEST_ASSERT_EQUAL_HEX8(0xC0u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
+    expect_byte_at(20, AGV_MSG_VEHICLE_STATUS, 6, 0xC0u);
     TEST_ASSERT_EQUAL_UINT8(1, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7]); /* the counter runs on */
-    run_until(30);
-    TEST_ASSERT_EQUAL_HEX8(0x40u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
+    expect_byte_at(30, AGV_MSG_VEHICLE_STATUS, 6, 0x40u);
     patch(AGV_MSG_VEHICLE_STATUS, 6, 0xC0u, 0xC0u, VEHICLE_FOREVER, 0);
-    run_until(1000);
-    TEST_ASSERT_EQUAL_HEX8(0xC0u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
+    expect_byte_at(1000, AGV_MSG_VEHICLE_STATUS, 6, 0xC0u);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_UNPATCH, .message = AGV_MSG_VEHICLE_STATUS});
-    run_until(1010);
-    TEST_ASSERT_EQUAL_HEX8(0x40u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
+    expect_byte_at(1010, AGV_MSG_VEHICLE_STATUS, 6, 0x40u);
 }
 
 static void expect_vehicle_status(uint32_t t_ms, uint8_t byte_1, uint8_t byte_2) {
@@ -187,8 +174,7 @@ void test_recovery_ends_every_misbehaviour_of_a_node(void) {
     run_until(300);
     const size_t first = sent_count;
     const uint8_t before = last_of(AGV_MSG_STEERING_STATUS)->frame.data[0];
-    run_until(400);
-    TEST_ASSERT_EQUAL_size_t(30, count_from(VEHICLE_EPS, first));
+    expect_sent_at(400, VEHICLE_EPS, first, 30);
     TEST_ASSERT_EQUAL_UINT8(before + 10, last_of(AGV_MSG_STEERING_STATUS)->frame.data[0]);
 }
 
@@ -196,27 +182,23 @@ void test_a_stranger_sends_once_or_again_and_again(void) {
     vehicle_action_t rogue = {.what = VEHICLE_DO_SEND, .side = HAL_CAN_AI, .frame = {.id = 0x7FFu, .length = 2}};
 
     TEST_ASSERT_TRUE(act(rogue));
-    run_until(100);
-    TEST_ASSERT_EQUAL_size_t(1, count_from(VEHICLE_ROGUE, 0));
+    expect_sent_at(100, VEHICLE_ROGUE, 0, 1);
     for (size_t i = 0; i < sent_count; i++) {
         TEST_ASSERT_EQUAL((sent[i].from == VEHICLE_ROGUE) ? HAL_CAN_AI : HAL_CAN_VEHICLE, sent[i].side);
     }
     rogue.ms = 10;
     rogue.count = 5;
     TEST_ASSERT_TRUE(act(rogue));
-    run_until(200);
-    TEST_ASSERT_EQUAL_size_t(6, count_from(VEHICLE_ROGUE, 0));
+    expect_sent_at(200, VEHICLE_ROGUE, 0, 6);
     rogue.count = VEHICLE_FOREVER;
     for (unsigned i = 0; i < VEHICLE_ROGUES_MAX; i++) {
         TEST_ASSERT_TRUE(act(rogue));
     }
     TEST_ASSERT_FALSE(act(rogue));
-    run_until(300);
-    TEST_ASSERT_EQUAL_size_t(6 + (10 * VEHICLE_ROGUES_MAX), count_from(VEHICLE_ROGUE, 0));
+    expect_sent_at(300, VEHICLE_ROGUE, 0, 6 + (10 * VEHICLE_ROGUES_MAX));
     TEST_ASSERT_TRUE(act((vehicle_action_t){.what = VEHICLE_DO_STOP_SENDING}));
     const size_t first = sent_count;
-    run_until(400);
-    TEST_ASSERT_EQUAL_size_t(0, count_from(VEHICLE_ROGUE, first));
+    expect_sent_at(400, VEHICLE_ROGUE, first, 0);
 }
 
 void test_actions_that_make_no_sense_are_refused(void) {
@@ -238,6 +220,5 @@ void test_after_a_gap_there_is_no_burst(void) {
     now_ms = 5000;
     run_until(5001);
     TEST_ASSERT_LESS_OR_EQUAL_size_t((size_t)AGV_MSG_COUNT, sent_count - first);
-    run_until(6000);
-    TEST_ASSERT_EQUAL_size_t(100, count_of(AGV_MSG_VEHICLE_STATUS, first));
+    expect_count_at(6000, AGV_MSG_VEHICLE_STATUS, first, 100);
 }

@@ -16,8 +16,7 @@ static void do_it(vehicle_do_t what, bool on) {
 static void drive(uint8_t gear) {
     (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = gear, .throttle_permille = 300});
     do_it(VEHICLE_DO_ENGAGE, true);
-    run_until(3000);
-    TEST_ASSERT_EQUAL_INT32((gear == AGV_GEAR_R) ? -1200 : 1200, look().speed_mm_s);
+    expect_speed_at(3000, (gear == AGV_GEAR_R) ? -1200 : 1200);
 }
 
 static void park(void) {
@@ -33,8 +32,8 @@ static int32_t speed_m_per_h(void) {
     return data[0] + (data[1] * 256);
 }
 
-static uint8_t mode_byte(void) {
-    return last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6];
+static void expect_mode_at(uint64_t t_ms, uint8_t byte) {
+    expect_byte_at(t_ms, AGV_MSG_VEHICLE_STATUS, 6, byte);
 }
 
 static int32_t measured_ddeg(void) {
@@ -125,21 +124,18 @@ void test_the_wheels_turn_on_in_park(void) {
     drive(AGV_GEAR_D);
     do_it(VEHICLE_DO_VCU_ROLL_ON, true);
     park();
-    run_until(9000);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, look().gear);
-    TEST_ASSERT_EQUAL_INT32(1200, look().speed_mm_s);
+    expect_gear_at(9000, AGV_GEAR_P);
+    expect_speed_at(9000, 1200);
     TEST_ASSERT_EQUAL_UINT8(0, throttle_status());
     do_it(VEHICLE_DO_VCU_ROLL, false);
-    run_until(9500);
-    TEST_ASSERT_EQUAL_INT32(0, look().speed_mm_s);
+    expect_speed_at(9500, 0);
 }
 
 void test_it_rolls_away_after_it_stood(void) {
     run_until(2000);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_VCU_ROLL, .on = true, .speed_mm_s = -300});
-    run_until(3000);
-    TEST_ASSERT_EQUAL_INT32(-300, look().speed_mm_s);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, look().gear);
+    expect_speed_at(3000, -300);
+    expect_gear_at(3000, AGV_GEAR_P);
     TEST_ASSERT_EQUAL_INT32(1080, speed_m_per_h());
     TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_VCU_ROLL, .on = true, .speed_mm_s = 20001}));
 }
@@ -151,8 +147,7 @@ void test_park_is_refused_at_speed(void) {
     run_until(3900); /* throttle 0 since 3067: it coasts at 0.4 m/s2 to 0.8 m/s */
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
     TEST_ASSERT_GREATER_THAN_INT32(800, look().speed_mm_s);
-    run_until(4500);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, look().gear);
+    expect_gear_at(4500, AGV_GEAR_P);
     TEST_ASSERT_LESS_THAN_INT32(800, look().fastest_park_mm_s);
 }
 
@@ -167,12 +162,10 @@ static void hear(hal_can_frame_t frame) {
 void test_a_sloppy_vcu_obeys_what_bytes_are_there(void) {
     drive(AGV_GEAR_D);
     hear(command_frame(0x168u, 1, HAL_CAN_FD, AGV_GEAR_P, 0));
-    run_until(3010);
-    TEST_ASSERT_EQUAL_UINT16(300, look().throttle_permille); /* not yet sloppy */
+    expect_throttle_at(3010, 300); /* not yet sloppy */
     do_it(VEHICLE_DO_VCU_SLOPPY, true);
     hear(command_frame(0x075u, 0, 0, 0, 0)); /* no byte, no command */
-    run_until(3020);
-    TEST_ASSERT_EQUAL_UINT16(300, look().throttle_permille);
+    expect_throttle_at(3020, 300);
     hear(command_frame(0x075u, 3, 0, 250, 0));
     run_until(3060);
     TEST_ASSERT_GREATER_THAN_UINT16(400, look().throttle_permille);
@@ -182,8 +175,7 @@ void test_a_sloppy_vcu_obeys_what_bytes_are_there(void) {
     TEST_ASSERT_FALSE(look().autopilot);
     do_it(VEHICLE_DO_VCU_SLOPPY, false);
     hear(command_frame(0x168u, 8, HAL_CAN_FD, AGV_GEAR_P, 0));
-    run_until(4500);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
+    expect_gear_at(4500, AGV_GEAR_D);
 }
 
 void test_a_short_43fh_is_no_sign_of_life(void) {
@@ -202,10 +194,8 @@ void test_one_frame_in_so_many_carries_another_mode(void) {
     run_until(100);
     size_t first = sent_count;
     patch(AGV_MSG_VEHICLE_STATUS, 6, 0xC0u, 0x80u, 1, 40);
-    run_until(101);
-    TEST_ASSERT_EQUAL_HEX8(0x80u, mode_byte()); /* the first one at once */
-    run_until(111);
-    TEST_ASSERT_EQUAL_HEX8(0x40u, mode_byte());
+    expect_mode_at(101, 0x80u); /* the first one at once */
+    expect_mode_at(111, 0x40u);
     run_until(4100); /* 400 frames */
     TEST_ASSERT_EQUAL_size_t(10, count_other(AGV_MSG_VEHICLE_STATUS, 6, 0x40u, first));
     first = sent_count;
@@ -222,12 +212,10 @@ void test_a_message_is_lost_now_and_then(void) {
     run_until(100);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_MUTE, .message = AGV_MSG_EPS_STATUS, .count = 2, .every = 10});
     size_t first = sent_count;
-    run_until(1100);
-    TEST_ASSERT_EQUAL_size_t(80, count_of(AGV_MSG_EPS_STATUS, first));
+    expect_count_at(1100, AGV_MSG_EPS_STATUS, first, 80);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_UNMUTE, .message = AGV_MSG_EPS_STATUS});
     first = sent_count;
-    run_until(2100);
-    TEST_ASSERT_EQUAL_size_t(100, count_of(AGV_MSG_EPS_STATUS, first));
+    expect_count_at(2100, AGV_MSG_EPS_STATUS, first, 100);
 }
 
 void test_what_363h_carries_is_late_and_its_counter_is_not(void) {
@@ -237,15 +225,12 @@ void test_what_363h_carries_is_late_and_its_counter_is_not(void) {
     const uint8_t counter = last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7];
     do_it(VEHICLE_DO_ENGAGE, true); /* 363h of 2000 would say so */
     TEST_ASSERT_TRUE(look().autopilot);
-    run_until(2300);
-    TEST_ASSERT_EQUAL_HEX8(0x40u, mode_byte());
-    run_until(2301);
-    TEST_ASSERT_EQUAL_HEX8(0x80u, mode_byte());
+    expect_mode_at(2300, 0x40u);
+    expect_mode_at(2301, 0x80u);
     TEST_ASSERT_EQUAL_UINT8((uint8_t)(counter + 31), last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7]);
     do_it(VEHICLE_DO_DISENGAGE, true);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_DELAY, .message = AGV_MSG_VEHICLE_STATUS, .ms = 0});
-    run_until(2311);
-    TEST_ASSERT_EQUAL_HEX8(0x40u, mode_byte());
+    expect_mode_at(2311, 0x40u);
     TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_DELAY, .message = AGV_MSG_VEHICLE_STATUS, .ms = 1001}));
 }
 
@@ -254,10 +239,8 @@ void test_the_longest_delay_reaches_back_as_far_as_it_says(void) {
     (void)act((vehicle_action_t){.what = VEHICLE_DO_DELAY, .message = AGV_MSG_VEHICLE_STATUS, .ms = 1000});
     run_until(3000);
     do_it(VEHICLE_DO_ENGAGE, true);
-    run_until(4000);
-    TEST_ASSERT_EQUAL_HEX8(0x40u, mode_byte());
-    run_until(4001);
-    TEST_ASSERT_EQUAL_HEX8(0x80u, mode_byte());
+    expect_mode_at(4000, 0x40u);
+    expect_mode_at(4001, 0x80u);
 }
 
 void test_a_command_that_is_ignored_changes_nothing(void) {
@@ -273,8 +256,7 @@ void test_a_command_that_is_ignored_changes_nothing(void) {
     TEST_ASSERT_EQUAL_INT32(1200, look().speed_mm_s);
     TEST_ASSERT_EQUAL_HEX8(0, look().alarms); /* the AI computer is heard all the same */
     (void)act((vehicle_action_t){.what = VEHICLE_DO_IGNORE, .message = AGV_MSG_THROTTLE_COMMAND, .on = false});
-    run_until(6200);
-    TEST_ASSERT_EQUAL_UINT16(0, look().throttle_permille);
+    expect_throttle_at(6200, 0);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_RECOVER, .node = VEHICLE_VCU});
     run_until(6400);
     TEST_ASSERT_FALSE(look().autopilot);
@@ -342,8 +324,7 @@ void test_the_ai_computer_weaves_and_the_steering_is_stuck(void) {
     range_of(AGV_MSG_STEERING_STATUS, 2, first, range);
     TEST_ASSERT_EQUAL_INT32(range[0], range[1]);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_WEAVE});
-    run_until(11100);
-    TEST_ASSERT_EQUAL_HEX8(0x8Cu, last_of(AGV_MSG_STEERING_COMMAND)->frame.data[0]); /* +10.0 degrees */
+    expect_byte_at(11100, AGV_MSG_STEERING_COMMAND, 0, 0x8Cu); /* +10.0 degrees */
     (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .angle_ddeg = 9000});
     (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_WEAVE, .angle_ddeg = 9000, .ms = 1000});
     first = sent_count;
@@ -359,8 +340,7 @@ void test_the_other_direction_is_taken_at_standstill_only(void) {
     run_until(3200); /* the AI computer waits, with throttle 0 */
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, last_of(AGV_MSG_GEAR_COMMAND)->frame.data[0]);
     TEST_ASSERT_EQUAL_UINT8(0, last_of(AGV_MSG_THROTTLE_COMMAND)->frame.data[0]);
-    run_until(9000);
-    TEST_ASSERT_EQUAL_INT32(-800, look().speed_mm_s);
+    expect_speed_at(9000, -800);
     int32_t speed_mm_s = 0;
     for (size_t i = first; i < sent_count; i++) {
         const hal_can_frame_t *frame = &sent[i].frame;
@@ -384,8 +364,6 @@ void test_a_vcu_that_is_told_to_change_direction_brakes_first(void) {
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear);
     TEST_ASSERT_INT32_WITHIN(30, 411, look().speed_mm_s);
     TEST_ASSERT_EQUAL_UINT8(0, throttle_status());
-    run_until(3700);
-    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_R, look().gear);
-    run_until(6000);
-    TEST_ASSERT_EQUAL_INT32(-1200, look().speed_mm_s);
+    expect_gear_at(3700, AGV_GEAR_R);
+    expect_speed_at(6000, -1200);
 }

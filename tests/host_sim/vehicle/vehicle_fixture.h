@@ -108,4 +108,32 @@ static const sent_t *last_of(agv_message_t message) {
     return NULL;
 }
 
+/* What is expected at a moment. */
+static inline void expect_gear_at(uint64_t t_ms, uint8_t gear) {
+    run_until(t_ms);
+    TEST_ASSERT_EQUAL_HEX8(gear, look().gear);
+}
+
+static inline void expect_speed_at(uint64_t t_ms, int32_t speed_mm_s) {
+    run_until(t_ms);
+    TEST_ASSERT_EQUAL_INT32(speed_mm_s, look().speed_mm_s);
+}
+
+static inline void expect_throttle_at(uint64_t t_ms, uint16_t permille) {
+    run_until(t_ms);
+    TEST_ASSERT_EQUAL_UINT16(permille, look().throttle_permille);
+}
+
+/* A byte of the newest frame of a message. */
+static inline void expect_byte_at(uint64_t t_ms, agv_message_t message, unsigned index, uint8_t value) {
+    run_until(t_ms);
+    TEST_ASSERT_EQUAL_HEX8(value, last_of(message)->frame.data[index]);
+}
+
+/* Frames of a message sent since `first`. */
+static inline void expect_count_at(uint64_t t_ms, agv_message_t message, size_t first, size_t count) {
+    run_until(t_ms);
+    TEST_ASSERT_EQUAL_size_t(count, count_of(message, first));
+}
+
 #endif

@@ -13,6 +13,11 @@ static void expect_no_fault(agv_state_t state) {
     expect_nothing(&f, STUCK, state);
 }
 
+static void expect_no_fault_after(uint32_t ms, agv_state_t state) {
+    fixture_run(&f, ms);
+    expect_no_fault(state);
+}
+
 /* ---- Lost and stuck ---- */
 
 /* In manual; engaged: causes.c. Muted: silent from now on. Frozen: sends on with an unchanged counter. */
@@ -20,8 +25,7 @@ static void check_manual(agv_fault_t fault, bool *how) {
     fixture_standby(&f);
     fixture_run_past(&f, AI);
     *how = true;
-    fixture_run(&f, 350);
-    expect_no_fault(AGV_STATE_STANDBY);
+    expect_no_fault_after(350, AGV_STATE_STANDBY);
     fixture_run(&f, 1);
     expect_warning(&f, fault, AGV_STATE_STANDBY);
     expect_led(&f, 14);
@@ -31,8 +35,7 @@ static void check_manual(agv_fault_t fault, bool *how) {
     *how = false;
     fixture_run_before(&f, AI);
     expect_fault(&f, fault, true);
-    fixture_run(&f, 1);
-    expect_no_fault(AGV_STATE_STANDBY);
+    expect_no_fault_after(1, AGV_STATE_STANDBY);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, fault));
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, fault));
     expect_led(&f, 0);
@@ -58,8 +61,7 @@ void test_lost_in_manual_may_be_made_a_trip(void) {
         fixture_run_past(&f, AI);
         f.traffic[AI].muted = i == 0;
         f.traffic[AI].frozen = i == 1;
-        fixture_run(&f, 350);
-        expect_no_fault(AGV_STATE_STANDBY);
+        expect_no_fault_after(350, AGV_STATE_STANDBY);
         fixture_run(&f, 1);
         expect_trip(&f, i == 0 ? LOST : STUCK, f.call, NO_HOLD);
     }
@@ -125,13 +127,11 @@ void test_the_class_follows_the_mode(void) {
 void test_never_seen(void) {
     f.traffic[AI].muted = true;
     fixture_standby(&f);
-    fixture_run(&f, 5000);
-    expect_no_fault(AGV_STATE_STANDBY);
+    expect_no_fault_after(5000, AGV_STATE_STANDBY);
     expect_led(&f, 0);
     fixture_wheels(&f, 800, 800);
     walk_engage(&f);
-    fixture_run(&f, 500);
-    expect_no_fault(AGV_STATE_STANDBY);
+    expect_no_fault_after(500, AGV_STATE_STANDBY);
     expect_trip_after(&f, 1, LOST, ANGLE_CENTRE);
     expect_led(&f, 14);
 }
@@ -143,8 +143,7 @@ void test_never_seen_when_engaged_between_two_ticks(void) {
     fixture_standby(&f);
     fixture_mode(&f, MODE_ENGAGED);
     fixture_send_now(&f, VCU);
-    fixture_run(&f, 500);
-    expect_no_fault(AGV_STATE_STANDBY);
+    expect_no_fault_after(500, AGV_STATE_STANDBY);
     expect_trip_after(&f, 1, LOST, ANGLE_CENTRE);
 }
 
@@ -172,8 +171,7 @@ void test_never_seen_and_the_time_is_over_before_the_engagement_is_continued(voi
     fixture_run(&f, 450);
     walk_disengage(&f);
     TEST_ASSERT_LESS_THAN_UINT32(500, f.now_ms - began_ms);
-    fixture_run(&f, 520 - (f.now_ms - began_ms));
-    expect_no_fault(AGV_STATE_STANDBY);
+    expect_no_fault_after(520 - (f.now_ms - began_ms), AGV_STATE_STANDBY);
     fixture_mode(&f, MODE_ENGAGED);
     fixture_send_now(&f, VCU);
     expect_trip(&f, LOST, f.call, ANGLE_CENTRE);
@@ -187,13 +185,11 @@ void test_seen_in_time(void) {
     walk_engage(&f);
     fixture_run(&f, 390);
     fixture_send_now(&f, AI);
-    fixture_run(&f, 200);
-    expect_no_fault(AGV_STATE_STANDBY);
+    expect_no_fault_after(200, AGV_STATE_STANDBY);
     fixture_send_now(&f, AI);
     expect_no_fault(AGV_STATE_ACTIVE);
     f.traffic[AI].muted = false;
-    fixture_run(&f, 2000);
-    expect_no_fault(AGV_STATE_ACTIVE);
+    expect_no_fault_after(2000, AGV_STATE_ACTIVE);
 }
 
 /* Received but never alive. */
@@ -208,8 +204,7 @@ void test_seen_while_engaged_but_frozen(void) {
     const uint32_t seen_ms = f.now_ms;
     fixture_run(&f, 200);
     fixture_send_now(&f, AI);
-    fixture_run(&f, 350 - (f.now_ms - seen_ms));
-    expect_no_fault(AGV_STATE_STANDBY);
+    expect_no_fault_after(350 - (f.now_ms - seen_ms), AGV_STATE_STANDBY);
     expect_trip_after(&f, 1, STUCK, ANGLE_CENTRE);
 }
 
@@ -242,8 +237,7 @@ static void trip_and_reset(agv_fault_t fault, bool *how) {
     reset(); /* the vehicle can be driven away manually with a dead AI computer */
     expect_no_fault(AGV_STATE_STANDBY);
     expect_led(&f, 0);
-    fixture_run(&f, 5000);
-    expect_no_fault(AGV_STATE_STANDBY);
+    expect_no_fault_after(5000, AGV_STATE_STANDBY);
     TEST_ASSERT_EQUAL_UINT32(2, fixture_raised(&f, LOST) + fixture_raised(&f, STUCK));
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, fault));
 }
@@ -289,11 +283,9 @@ static void check_reset_with_ai_alive(bool goes_on) {
     if (goes_on) {
         fixture_run_before(&f, AI);
         expect_no_fault(AGV_STATE_STANDBY);
-        fixture_run(&f, 1);
-        expect_no_fault(AGV_STATE_ACTIVE);
+        expect_no_fault_after(1, AGV_STATE_ACTIVE);
     } else {
-        fixture_run(&f, 350 - (f.now_ms - beat_ms));
-        expect_no_fault(AGV_STATE_STANDBY);
+        expect_no_fault_after(350 - (f.now_ms - beat_ms), AGV_STATE_STANDBY);
         expect_reason_after(&f, 1, LOST);
     }
 }
@@ -312,13 +304,11 @@ void test_a_reset_forgets_it_also_if_its_loss_trips_in_manual(void) {
     f.traffic[AI].muted = true;
     fixture_run(&f, 1000);
     reset();
-    fixture_run(&f, 5000);
-    expect_no_fault(AGV_STATE_STANDBY);
+    expect_no_fault_after(5000, AGV_STATE_STANDBY);
     f.traffic[AI].muted = false;
     fixture_run_past(&f, AI);
     f.traffic[AI].muted = true;
-    fixture_run(&f, 350);
-    expect_no_fault(AGV_STATE_STANDBY);
+    expect_no_fault_after(350, AGV_STATE_STANDBY);
     expect_reason_after(&f, 1, LOST);
 }
 
@@ -329,8 +319,7 @@ void test_a_reset_forgets_a_frozen_ai_until_its_counter_changes(void) {
     f.traffic[AI].frozen = false;
     fixture_run_past(&f, AI);
     f.traffic[AI].frozen = true;
-    fixture_run(&f, 350);
-    expect_no_fault(AGV_STATE_STANDBY);
+    expect_no_fault_after(350, AGV_STATE_STANDBY);
     expect_fault_after(&f, 1, STUCK, true);
     expect_led(&f, 14);
     expect_state(&f, AGV_STATE_STANDBY);

@@ -17,6 +17,12 @@ static void error_frame(uint32_t classes, uint8_t controller) {
     TEST_ASSERT_EQUAL_HEX32(classes, received.frame.id);
 }
 
+static void expect_status_after(uint32_t classes, uint8_t controller, hal_can_state_t state, unsigned bus_offs,
+                                unsigned overruns) {
+    error_frame(classes, controller);
+    expect_status(state, bus_offs, overruns);
+}
+
 /* Ticks and receives until the state is reported. @return whether a file has changed meanwhile */
 static bool run_until(hal_can_state_t state) {
     bool changed = false;
@@ -29,41 +35,30 @@ static bool run_until(hal_can_state_t state) {
 }
 
 void test_error_passive_and_back(void) {
-    error_frame(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE);
-    expect_status(HAL_CAN_ERROR_PASSIVE, 0, 0);
-    error_frame(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_WARNING);
-    expect_status(HAL_CAN_ERROR_ACTIVE, 0, 0);
-    error_frame(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_PASSIVE);
-    expect_status(HAL_CAN_ERROR_PASSIVE, 0, 0);
-    error_frame(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_WARNING);
-    expect_status(HAL_CAN_ERROR_ACTIVE, 0, 0);
-    error_frame(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_WARNING);
-    expect_status(HAL_CAN_ERROR_PASSIVE, 0, 0);
-    error_frame(CAN_ERR_CRTL, CAN_ERR_CRTL_ACTIVE);
-    expect_status(HAL_CAN_ERROR_ACTIVE, 0, 0);
+    expect_status_after(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE, HAL_CAN_ERROR_PASSIVE, 0, 0);
+    expect_status_after(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_WARNING, HAL_CAN_ERROR_ACTIVE, 0, 0);
+    expect_status_after(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_PASSIVE, HAL_CAN_ERROR_PASSIVE, 0, 0);
+    expect_status_after(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_WARNING, HAL_CAN_ERROR_ACTIVE, 0, 0);
+    expect_status_after(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_WARNING, HAL_CAN_ERROR_PASSIVE, 0, 0);
+    expect_status_after(CAN_ERR_CRTL, CAN_ERR_CRTL_ACTIVE, HAL_CAN_ERROR_ACTIVE, 0, 0);
 }
 
 void test_other_errors_change_nothing(void) {
-    error_frame(CAN_ERR_PROT | CAN_ERR_ACK | CAN_ERR_BUSERROR, 0);
-    expect_status(HAL_CAN_ERROR_ACTIVE, 0, 0);
+    expect_status_after(CAN_ERR_PROT | CAN_ERR_ACK | CAN_ERR_BUSERROR, 0, HAL_CAN_ERROR_ACTIVE, 0, 0);
     error_frame(CAN_ERR_PROT, CAN_ERR_CRTL_TX_PASSIVE); /* without the class the byte does not concern the controller */
     expect_status(HAL_CAN_ERROR_ACTIVE, 0, 0);
-    error_frame(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_OVERFLOW);
-    expect_status(HAL_CAN_ERROR_ACTIVE, 0, 0);
+    expect_status_after(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_OVERFLOW, HAL_CAN_ERROR_ACTIVE, 0, 0);
 }
 
 /* Shows: SUP-7 */
 void test_an_overrun_of_the_controller_is_counted(void) {
-    error_frame(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_OVERFLOW);
-    expect_status(HAL_CAN_ERROR_ACTIVE, 0, 1);
-    error_frame(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_OVERFLOW | CAN_ERR_CRTL_RX_PASSIVE);
-    expect_status(HAL_CAN_ERROR_PASSIVE, 0, 2);
+    expect_status_after(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_OVERFLOW, HAL_CAN_ERROR_ACTIVE, 0, 1);
+    expect_status_after(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_OVERFLOW | CAN_ERR_CRTL_RX_PASSIVE, HAL_CAN_ERROR_PASSIVE, 0, 2);
 }
 
 /* Shows: SUP-7 */
 void test_bus_off_lasts_until_the_restart(void) {
-    error_frame(CAN_ERR_BUSOFF, 0);
-    expect_status(HAL_CAN_BUS_OFF, 1, 0);
+    expect_status_after(CAN_ERR_BUSOFF, 0, HAL_CAN_BUS_OFF, 1, 0);
     error_frame(CAN_ERR_BUSOFF, 0);
     error_frame(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE);
     error_frame(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_WARNING);
@@ -72,19 +67,15 @@ void test_bus_off_lasts_until_the_restart(void) {
     port_run_ms(&hal, 5);
     expect_status(HAL_CAN_BUS_OFF, 1, 0);
     TEST_ASSERT_FALSE(port_send(&hal, 0x100));
-    error_frame(CAN_ERR_RESTARTED, 0);
-    expect_status(HAL_CAN_ERROR_ACTIVE, 1, 0);
+    expect_status_after(CAN_ERR_RESTARTED, 0, HAL_CAN_ERROR_ACTIVE, 1, 0);
     TEST_ASSERT_TRUE(port_send(&hal, 0x100));
-    error_frame(CAN_ERR_BUSOFF, 0);
-    expect_status(HAL_CAN_BUS_OFF, 2, 0);
-    error_frame(CAN_ERR_CRTL, CAN_ERR_CRTL_ACTIVE);
-    expect_status(HAL_CAN_ERROR_ACTIVE, 2, 0);
+    expect_status_after(CAN_ERR_BUSOFF, 0, HAL_CAN_BUS_OFF, 2, 0);
+    expect_status_after(CAN_ERR_CRTL, CAN_ERR_CRTL_ACTIVE, HAL_CAN_ERROR_ACTIVE, 2, 0);
 }
 
 void test_a_restart_that_comes_with_passive(void) {
     error_frame(CAN_ERR_BUSOFF, 0);
-    error_frame(CAN_ERR_RESTARTED | CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE);
-    expect_status(HAL_CAN_ERROR_PASSIVE, 1, 0);
+    expect_status_after(CAN_ERR_RESTARTED | CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE, HAL_CAN_ERROR_PASSIVE, 1, 0);
 }
 
 /* Shows: SUP-7 */

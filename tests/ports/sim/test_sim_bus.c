@@ -8,8 +8,7 @@ static void assert_frame_times(uint32_t bitrate, uint64_t end_us, uint64_t next_
     fixture_init(&fixture, bitrate);
     TEST_ASSERT_TRUE(send(&fixture, A, 0x100, 8, 1));
     TEST_ASSERT_TRUE(send(&fixture, A, 0x100, 8, 2));
-    sim_bus_run_until(bus, 10000);
-    TEST_ASSERT_EQUAL_UINT(2, fixture.event_count);
+    assert_events_at(10000, 2);
     TEST_ASSERT_EQUAL_UINT64(0, fixture.events[0].start_us);
     TEST_ASSERT_EQUAL_UINT64(end_us, fixture.events[0].end_us);
     TEST_ASSERT_EQUAL_UINT64(next_us, fixture.events[1].start_us);
@@ -43,8 +42,7 @@ void test_the_lowest_identifier_goes_first_whoever_asked_first(void) {
     send(&fixture, A, 0x363, 8, 0);
     send(&fixture, B, 0x101, 8, 0);
     send(&fixture, C, 0x065, 8, 0);
-    sim_bus_run_until(bus, 5000);
-    TEST_ASSERT_EQUAL_UINT(3, fixture.event_count);
+    assert_events_at(5000, 3);
     TEST_ASSERT_EQUAL_HEX32(0x065, fixture.events[0].id);
     TEST_ASSERT_EQUAL_HEX32(0x101, fixture.events[1].id);
     TEST_ASSERT_EQUAL_HEX32(0x363, fixture.events[2].id);
@@ -53,8 +51,7 @@ void test_the_lowest_identifier_goes_first_whoever_asked_first(void) {
 }
 
 void test_a_frame_on_the_wire_is_not_interrupted(void) {
-    send(&fixture, A, 0x7FF, 8, 0);
-    sim_bus_run_until(bus, 1); /* it has begun */
+    send_and_run_until(A, 0x7FF, 8, 0, 1); /* it has begun */
     send(&fixture, B, 0x001, 8, 0);
     send(&fixture, C, 0x002, 8, 0);
     sim_bus_run_until(bus, 5000);
@@ -87,8 +84,7 @@ void test_data_beats_remote_beats_extended(void) {
     for (sim_bus_node_t node = 0; node < 4; node++) {
         TEST_ASSERT_TRUE(sim_bus_send(bus, node, &frames[node]));
     }
-    sim_bus_run_until(bus, 5000);
-    TEST_ASSERT_EQUAL_UINT(4, fixture.event_count);
+    assert_events_at(5000, 4);
     for (unsigned i = 0; i < 4; i++) {
         TEST_ASSERT_EQUAL_HEX8(frames[3 - i].flags, fixture.events[i].flags);
         TEST_ASSERT_FALSE(fixture.events[i].error);
@@ -199,8 +195,7 @@ void test_frames_that_the_bus_cannot_carry_are_refused(void) {
 void test_a_full_receive_queue_counts_overruns_and_keeps_the_old_frames(void) {
     hal_can_frame_t frame;
     for (unsigned i = 0; i < 11; i++) { /* the queue holds 8 */
-        send(&fixture, A, 0x100, 8, (uint8_t)i);
-        sim_bus_run_until(bus, (i + 1) * 1000);
+        send_and_run_until(A, 0x100, 8, (uint8_t)i, (i + 1) * 1000);
     }
     TEST_ASSERT_EQUAL_UINT16(3, status_of(&fixture, B).overrun_count);
     for (unsigned i = 0; i < 5; i++) {
@@ -236,8 +231,7 @@ void test_the_age_of_the_oldest_waiting_frame_is_reported(void) {
     sim_bus_run_until(bus, 107000);
     TEST_ASSERT_EQUAL_UINT32(0, status_of(&fixture, A).tx_pending_ms);
     sim_bus_set_stalled(bus, A, true);
-    send(&fixture, A, 0x300, 8, 0);
-    sim_bus_run_until(bus, UINT64_C(6000000000000)); /* longer than 32 bits of milliseconds */
+    send_and_run_until(A, 0x300, 8, 0, UINT64_C(6000000000000)); /* longer than 32 bits of milliseconds */
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, status_of(&fixture, A).tx_pending_ms);
 }
 
@@ -258,8 +252,7 @@ void test_nodes_and_taps_are_limited_and_configurations_checked(void) {
     }
     TEST_ASSERT_FALSE(sim_bus_add_tap(bus, fixture_record, &fixture));
     send(&fixture, 15, 0x100, 8, 0); /* the last node works, and every tap is called */
-    sim_bus_run_until(bus, 1000);
-    TEST_ASSERT_EQUAL_UINT(SIM_BUS_TAPS_MAX, fixture.event_count);
+    assert_events_at(1000, SIM_BUS_TAPS_MAX);
     TEST_ASSERT_EQUAL_HEX32(0x8000, fixture.events[0].senders);
 }
 
@@ -274,8 +267,7 @@ void test_a_time_in_the_past_changes_nothing(void) {
     TEST_ASSERT_EQUAL_UINT64(501, sim_bus_due_us(bus));
     sim_bus_run_until(bus, 501);
     TEST_ASSERT_EQUAL_UINT64(764, sim_bus_due_us(bus));
-    sim_bus_run_until(bus, 764);
-    TEST_ASSERT_EQUAL_UINT(1, fixture.event_count);
+    assert_events_at(764, 1);
     TEST_ASSERT_EQUAL_UINT64(SIM_BUS_NEVER, sim_bus_due_us(bus));
 }
 
@@ -365,12 +357,10 @@ void test_a_copy_is_a_snapshot(void) {
     send(&fixture, B, 0x301, 8, 0);
     sim_bus_run_until(bus, 300);
     copy = *bus;
-    sim_bus_run_until(bus, 5000);
-    TEST_ASSERT_EQUAL_UINT(2, fixture.event_count);
+    assert_events_at(5000, 2);
     *bus = copy;
     TEST_ASSERT_EQUAL_UINT64(300, sim_bus_now_us(bus));
-    sim_bus_run_until(bus, 5000);
-    TEST_ASSERT_EQUAL_UINT(3, fixture.event_count);
+    assert_events_at(5000, 3);
     TEST_ASSERT_EQUAL_UINT64(fixture.events[1].end_us, fixture.events[2].end_us);
 }
 

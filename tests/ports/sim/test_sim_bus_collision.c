@@ -4,8 +4,7 @@
 void test_identical_frames_merge(void) {
     send(&fixture, A, 0x168, 8, 7);
     send(&fixture, B, 0x168, 8, 7);
-    sim_bus_run_until(bus, 1000);
-    TEST_ASSERT_EQUAL_UINT(1, fixture.event_count);
+    assert_events_at(1000, 1);
     TEST_ASSERT_FALSE(fixture.events[0].error);
     TEST_ASSERT_EQUAL_HEX32(0x3, fixture.events[0].senders);
     TEST_ASSERT_EQUAL_UINT8(A, fixture.events[0].sender);
@@ -33,8 +32,7 @@ void test_identical_frames_of_all_are_not_acknowledged(void) {
 void test_different_frames_destroy_each_other(void) {
     send(&fixture, A, 0x168, 1, 0x00);
     send(&fixture, B, 0x168, 1, 0x80);
-    sim_bus_run_until(bus, 88);
-    TEST_ASSERT_EQUAL_UINT(1, fixture.event_count);
+    assert_events_at(88, 1);
     TEST_ASSERT_TRUE(fixture.events[0].error);
     TEST_ASSERT_EQUAL_UINT64(88, fixture.events[0].end_us);
     TEST_ASSERT_EQUAL_HEX32(0x3, fixture.events[0].senders);
@@ -58,12 +56,10 @@ void test_different_frames_destroy_each_other(void) {
 void test_a_collision_ends_when_the_loser_is_passive(void) {
     send(&fixture, A, 0x168, 1, 0x00);
     send(&fixture, B, 0x168, 1, 0x80);
-    sim_bus_run_until(bus, 1498);
-    TEST_ASSERT_EQUAL_UINT(16, fixture.event_count);
+    assert_events_at(1498, 16);
     assert_state(HAL_CAN_ERROR_PASSIVE, A);
     assert_state(HAL_CAN_ERROR_PASSIVE, B);
-    sim_bus_run_until(bus, 1520 + 124);
-    TEST_ASSERT_EQUAL_UINT(17, fixture.event_count);
+    assert_events_at(1520 + 124, 17);
     TEST_ASSERT_EQUAL_UINT64(1520, fixture.events[16].start_us);
     TEST_ASSERT_EQUAL_HEX32(0x1, fixture.events[16].senders);
     TEST_ASSERT_FALSE(fixture.events[16].error);

@@ -11,14 +11,11 @@
 /* Shows: SUP-7 */
 void test_a_lone_node_tries_for_ever_and_becomes_passive(void) {
     only_a_and(A);
-    send(&fixture, A, 0x168, 8, 0);
-    sim_bus_run_until(bus, 288);
+    send_and_run_until(A, 0x168, 8, 0, 288);
     TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, A));
     TEST_ASSERT_EQUAL_UINT64(288, fixture.events[0].end_us);
-    sim_bus_run_until(bus, 4697);
-    assert_state(HAL_CAN_ERROR_ACTIVE, A);
-    sim_bus_run_until(bus, 4698);
-    assert_state(HAL_CAN_ERROR_PASSIVE, A);
+    assert_state_at(4697, HAL_CAN_ERROR_ACTIVE, A);
+    assert_state_at(4698, HAL_CAN_ERROR_PASSIVE, A);
     sim_bus_run_until(bus, 50000);
     TEST_ASSERT_EQUAL_UINT64(4698 + 22, fixture.events[16].start_us);
     TEST_ASSERT_EQUAL_UINT64(4698 + 22 + 310, fixture.events[17].start_us);
@@ -58,8 +55,7 @@ void test_an_unplugged_node_is_alone(void) {
 void test_corrupted_frames_are_sent_again(void) {
     sim_bus_corrupt_all(bus, 2);
     send(&fixture, A, 0x168, 8, 0);
-    sim_bus_run_until(bus, 5000);
-    TEST_ASSERT_EQUAL_UINT(3, fixture.event_count);
+    assert_events_at(5000, 3);
     TEST_ASSERT_TRUE(fixture.events[0].error && fixture.events[1].error);
     TEST_ASSERT_EQUAL_UINT64(304, fixture.events[0].end_us);
     TEST_ASSERT_EQUAL_UINT64(310, fixture.events[1].start_us);
@@ -78,8 +74,7 @@ void test_only_the_frames_of_one_sender_are_corrupted(void) {
     send(&fixture, A, 0x168, 8, 0);
     sim_bus_run_until(bus, 2000);
     send(&fixture, A, 0x168, 8, 0);
-    sim_bus_run_until(bus, 5000);
-    TEST_ASSERT_EQUAL_UINT(4, fixture.event_count);
+    assert_events_at(5000, 4);
     TEST_ASSERT_FALSE(fixture.events[0].error);
     TEST_ASSERT_TRUE(fixture.events[1].error);
     TEST_ASSERT_EQUAL_UINT(0, tec_of(&fixture, B));
@@ -92,14 +87,12 @@ void test_a_node_whose_frames_always_fail_goes_bus_off(void) {
     sim_bus_corrupt_sent(bus, A, SIM_BUS_FOREVER);
     send(&fixture, A, 0x168, 8, 0);
     send(&fixture, A, 0x169, 8, 0);
-    sim_bus_run_until(bus, 100000);
-    TEST_ASSERT_EQUAL_UINT(32, fixture.event_count);
+    assert_events_at(100000, 32);
     assert_state(HAL_CAN_BUS_OFF, A);
     TEST_ASSERT_EQUAL_UINT16(1, status_of(&fixture, A).bus_off_count);
     TEST_ASSERT_EQUAL_UINT32(0, status_of(&fixture, A).tx_pending_ms);
     TEST_ASSERT_FALSE(send(&fixture, A, 0x168, 8, 0));
-    send(&fixture, B, 0x100, 8, 0);
-    sim_bus_run_until(bus, 101000);
+    send_and_run_until(B, 0x100, 8, 0, 101000);
     TEST_ASSERT_EQUAL_UINT(0, received_by(&fixture, A)); /* it does not receive either */
     assert_state(HAL_CAN_BUS_OFF, A);                    /* and it does not recover by itself */
 }
@@ -108,41 +101,34 @@ void test_a_node_whose_frames_always_fail_goes_bus_off(void) {
  * loses frames. */
 void test_a_receiver_that_cannot_read_becomes_passive(void) {
     sim_bus_corrupt_received(bus, B, 17);
-    send(&fixture, A, 0x168, 8, 0);
-    sim_bus_run_until(bus, 15 * 310);
+    send_and_run_until(A, 0x168, 8, 0, 15 * 310);
     TEST_ASSERT_EQUAL_UINT(135, rec_of(&fixture, B));
     TEST_ASSERT_EQUAL_UINT(15, rec_of(&fixture, C));
     TEST_ASSERT_EQUAL_UINT(120, tec_of(&fixture, A));
     assert_state(HAL_CAN_ERROR_PASSIVE, B);
-    sim_bus_run_until(bus, 6000);
-    TEST_ASSERT_EQUAL_UINT(16, fixture.event_count);
+    assert_events_at(6000, 16);
     TEST_ASSERT_FALSE(fixture.events[15].error);
     TEST_ASSERT_EQUAL_UINT(0, received_by(&fixture, B));
     TEST_ASSERT_EQUAL_UINT(1, received_by(&fixture, C));
-    send(&fixture, A, 0x168, 8, 0);
-    sim_bus_run_until(bus, 7000); /* the 17th */
+    send_and_run_until(A, 0x168, 8, 0, 7000); /* the 17th */
     TEST_ASSERT_EQUAL_UINT(137, rec_of(&fixture, B));
-    send(&fixture, A, 0x168, 8, 0);
-    sim_bus_run_until(bus, 8000); /* a good frame: back to 127, active */
+    send_and_run_until(A, 0x168, 8, 0, 8000); /* a good frame: back to 127, active */
     TEST_ASSERT_EQUAL_UINT(127, rec_of(&fixture, B));
     assert_state(HAL_CAN_ERROR_ACTIVE, B);
     TEST_ASSERT_EQUAL_UINT(1, received_by(&fixture, B));
-    send(&fixture, A, 0x168, 8, 0);
-    sim_bus_run_until(bus, 9000);
+    send_and_run_until(A, 0x168, 8, 0, 9000);
     TEST_ASSERT_EQUAL_UINT(126, rec_of(&fixture, B));
 }
 
 void test_a_frame_misread_once_counts_once(void) {
     sim_bus_corrupt_received(bus, B, 1);
-    send(&fixture, A, 0x168, 8, 0);
-    sim_bus_run_until(bus, 304);
+    send_and_run_until(A, 0x168, 8, 0, 304);
     TEST_ASSERT_EQUAL_UINT(9, rec_of(&fixture, B));
     sim_bus_run_until(bus, 1000);
     TEST_ASSERT_EQUAL_UINT(8, rec_of(&fixture, B));
     TEST_ASSERT_EQUAL_UINT(7, tec_of(&fixture, A));
     sim_bus_corrupt_received(bus, B, 1);
-    send(&fixture, A, 0x168, 8, 0);
-    sim_bus_run_until(bus, 1100);
+    send_and_run_until(A, 0x168, 8, 0, 1100);
     sim_bus_set_power(bus, B, false); /* during a frame: this frame is not affected */
     sim_bus_set_power(bus, B, true);
     sim_bus_run_until(bus, 1304);
@@ -155,8 +141,7 @@ void test_a_frame_that_no_node_could_read_is_not_acknowledged(void) {
     only_a_and(B);
     sim_bus_set_error_counters(bus, B, 0, 200);
     sim_bus_corrupt_received(bus, B, 1);
-    send(&fixture, A, 0x168, 8, 0);
-    sim_bus_run_until(bus, 288);
+    send_and_run_until(A, 0x168, 8, 0, 288);
     TEST_ASSERT_TRUE(fixture.events[0].error);
     TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, A));
     TEST_ASSERT_EQUAL_UINT(201, rec_of(&fixture, B));
@@ -178,8 +163,7 @@ void test_a_stalled_node_receives_but_does_not_send(void) {
     sim_bus_set_stalled(bus, A, true);
     send(&fixture, A, 0x001, 8, 0);
     send(&fixture, B, 0x168, 8, 0);
-    sim_bus_run_until(bus, 5000);
-    TEST_ASSERT_EQUAL_UINT(1, fixture.event_count);
+    assert_events_at(5000, 1);
     TEST_ASSERT_EQUAL_UINT(1, received_by(&fixture, A));
     TEST_ASSERT_EQUAL_UINT32(5, status_of(&fixture, A).tx_pending_ms);
     sim_bus_set_stalled(bus, A, false);
@@ -211,17 +195,14 @@ void test_a_passive_sender_lets_the_others_go_first(void) {
     }
     sim_bus_run_until(bus, 560); /* the second one: 286..550, and A may go on from 572 */
     TEST_ASSERT_EQUAL_UINT64(286, fixture.events[1].start_us);
-    send(&fixture, B, 0x300, 8, 0);
-    sim_bus_run_until(bus, 2000);
+    send_and_run_until(B, 0x300, 8, 0, 2000);
     TEST_ASSERT_EQUAL_HEX32(0x300, fixture.events[2].id);
     TEST_ASSERT_EQUAL_UINT64(560, fixture.events[2].start_us);
     TEST_ASSERT_EQUAL_UINT64(830, fixture.events[3].start_us);
-    send(&fixture, A, 0x103, 8, 0);
-    sim_bus_run_until(bus, 2264);
+    send_and_run_until(A, 0x103, 8, 0, 2264);
     sim_bus_set_power(bus, A, false); /* a new node has no suspend time */
     sim_bus_set_power(bus, A, true);
-    send(&fixture, A, 0x104, 8, 0);
-    sim_bus_run_until(bus, 3000);
+    send_and_run_until(A, 0x104, 8, 0, 3000);
     TEST_ASSERT_EQUAL_UINT64(2270, fixture.events[5].start_us);
 }
 
@@ -229,8 +210,7 @@ void test_a_passive_sender_lets_the_others_go_first(void) {
 
 /* Shows: SUP-7, FSM-2 */
 void test_after_a_purge_at_most_the_frame_on_the_bus_is_sent(void) {
-    send(&fixture, A, 0x200, 8, 1);
-    sim_bus_run_until(bus, 100);
+    send_and_run_until(A, 0x200, 8, 1, 100);
     send(&fixture, A, 0x100, 8, 2);
     send(&fixture, A, 0x201, 8, 3);
     sim_bus_purge(bus, A);
@@ -240,8 +220,7 @@ void test_after_a_purge_at_most_the_frame_on_the_bus_is_sent(void) {
     TEST_ASSERT_EQUAL_UINT32(0, status_of(&fixture, A).tx_pending_ms);
     send(&fixture, A, 0x300, 8, 4);
     TEST_ASSERT_EQUAL_UINT32(1, status_of(&fixture, A).tx_pending_ms);
-    sim_bus_run_until(bus, 5000);
-    TEST_ASSERT_EQUAL_UINT(2, fixture.event_count);
+    assert_events_at(5000, 2);
     TEST_ASSERT_EQUAL_UINT8(1, fixture.events[0].first);
     TEST_ASSERT_EQUAL_UINT8(4, fixture.events[1].first);
 }
@@ -253,8 +232,7 @@ void test_a_purged_frame_that_fails_is_not_sent_again(void) {
     send(&fixture, A, 0x200, 8, 2);
     sim_bus_run_until(bus, 100);
     sim_bus_purge(bus, A);
-    sim_bus_run_until(bus, 5000);
-    TEST_ASSERT_EQUAL_UINT(1, fixture.event_count);
+    assert_events_at(5000, 1);
     TEST_ASSERT_TRUE(fixture.events[0].error);
     TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(bus, A));
     TEST_ASSERT_EQUAL_UINT64(SIM_BUS_NEVER, sim_bus_due_us(bus));
@@ -267,8 +245,7 @@ void test_a_purge_keeps_the_frame_that_is_on_the_wire(void) {
     sim_bus_run_until(bus, 100);
     sim_bus_purge(bus, A);
     send(&fixture, A, 0x400, 8, 4);
-    sim_bus_run_until(bus, 1000);
-    TEST_ASSERT_EQUAL_UINT(2, fixture.event_count);
+    assert_events_at(1000, 2);
     TEST_ASSERT_EQUAL_UINT8(2, fixture.events[0].first);
     TEST_ASSERT_EQUAL_UINT8(4, fixture.events[1].first);
     TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(bus, A));
@@ -283,8 +260,7 @@ void test_a_purge_keeps_the_frame_that_is_on_the_wire(void) {
 /* Between an error frame and the next attempt the bus is idle. */
 void test_a_purge_between_two_tries_leaves_nothing(void) {
     sim_bus_corrupt_all(bus, 1);
-    send(&fixture, A, 0x100, 8, 1);
-    sim_bus_run_until(bus, 305);
+    send_and_run_until(A, 0x100, 8, 1, 305);
     TEST_ASSERT_TRUE(fixture.events[0].error);
     sim_bus_purge(bus, A);
     TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(bus, A));
@@ -296,6 +272,5 @@ void test_a_purge_before_the_frame_starts_leaves_nothing(void) {
     send(&fixture, A, 0x200, 8, 1);
     sim_bus_purge(bus, A);
     TEST_ASSERT_EQUAL_UINT64(SIM_BUS_NEVER, sim_bus_due_us(bus));
-    sim_bus_run_until(bus, 5000);
-    TEST_ASSERT_EQUAL_UINT(0, fixture.event_count);
+    assert_events_at(5000, 0);
 }

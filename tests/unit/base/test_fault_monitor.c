@@ -65,6 +65,11 @@ static void expect_summary(unsigned raised, unsigned cause, unsigned ai_cause, u
     TEST_ASSERT_EQUAL_UINT8(unresettable, monitor.summary.unresettable);
 }
 
+static void expect_evaluated(unsigned raised, unsigned cause, unsigned ai_cause, unsigned unresettable) {
+    evaluate();
+    expect_summary(raised, cause, ai_cause, unresettable);
+}
+
 enum { NONE = AGV_FAULT_NONE };
 
 /* ---- Conditions and transients ---- */
@@ -155,21 +160,17 @@ void test_an_invalid_fault_is_never_active(void) {
 
 /* Shows: FSM-5 */
 void test_a_trip_is_raised_once_and_its_cause_stands(void) {
-    evaluate();
-    expect_summary(NONE, NONE, NONE, NONE);
+    expect_evaluated(NONE, NONE, NONE, NONE);
     set(AGV_FAULT_S_DRIVER_ALARM, true);
     expect_summary(NONE, NONE, NONE, NONE); /* not yet evaluated */
-    evaluate();
-    expect_summary(AGV_FAULT_S_DRIVER_ALARM, AGV_FAULT_S_DRIVER_ALARM, NONE, NONE);
+    expect_evaluated(AGV_FAULT_S_DRIVER_ALARM, AGV_FAULT_S_DRIVER_ALARM, NONE, NONE);
     expect_set(AGV_FAULT_S_DRIVER_ALARM, &changes.changed);
     expect_set(AGV_FAULT_S_DRIVER_ALARM, &monitor.tripping);
     expect_set(NONE, &changes.was_trip);
-    evaluate();
-    expect_summary(NONE, AGV_FAULT_S_DRIVER_ALARM, NONE, NONE);
+    expect_evaluated(NONE, AGV_FAULT_S_DRIVER_ALARM, NONE, NONE);
     TEST_ASSERT_FALSE(changes.any);
     set(AGV_FAULT_S_DRIVER_ALARM, false);
-    evaluate();
-    expect_summary(NONE, NONE, NONE, NONE);
+    expect_evaluated(NONE, NONE, NONE, NONE);
     expect_set(AGV_FAULT_S_DRIVER_ALARM, &changes.changed);
     expect_set(AGV_FAULT_S_DRIVER_ALARM, &changes.was_trip);
     expect_set(NONE, &monitor.tripping);
@@ -180,20 +181,16 @@ void test_a_trip_is_raised_once_and_its_cause_stands(void) {
 void test_every_occurrence_of_a_transient_is_raised(void) {
     for (uint32_t ms = 0; ms < 3; ms++) {
         event(AGV_FAULT_FOREIGN_COMMAND_SENDER, ms);
-        evaluate();
-        expect_summary(AGV_FAULT_FOREIGN_COMMAND_SENDER, AGV_FAULT_FOREIGN_COMMAND_SENDER, NONE, NONE);
+        expect_evaluated(AGV_FAULT_FOREIGN_COMMAND_SENDER, AGV_FAULT_FOREIGN_COMMAND_SENDER, NONE, NONE);
         expect_set((ms == 0) ? (unsigned)AGV_FAULT_FOREIGN_COMMAND_SENDER : (unsigned)NONE, &changes.changed);
-        evaluate();
-        expect_summary(NONE, AGV_FAULT_FOREIGN_COMMAND_SENDER, NONE, NONE);
+        expect_evaluated(NONE, AGV_FAULT_FOREIGN_COMMAND_SENDER, NONE, NONE);
     }
     event(AGV_FAULT_RX_OVERRUN, 3); /* only warns */
-    evaluate();
-    expect_summary(NONE, AGV_FAULT_FOREIGN_COMMAND_SENDER, NONE, NONE);
+    expect_evaluated(NONE, AGV_FAULT_FOREIGN_COMMAND_SENDER, NONE, NONE);
     set(AGV_FAULT_BUS_OFF, true); /* a lasting condition is raised once, whatever else occurs */
     evaluate();
     event(AGV_FAULT_RX_OVERRUN, 4);
-    evaluate();
-    expect_summary(NONE, AGV_FAULT_BUS_OFF, NONE, NONE);
+    expect_evaluated(NONE, AGV_FAULT_BUS_OFF, NONE, NONE);
 }
 
 /* Other faults may change in the meantime. */
@@ -211,24 +208,21 @@ void test_no_trip_is_raised_again_by_another_fault(void) {
 
 void test_a_warning_changes_but_is_no_trip(void) {
     set(AGV_FAULT_EPS_TEMP_ABOVE_110, true);
-    evaluate();
-    expect_summary(NONE, NONE, NONE, NONE);
+    expect_evaluated(NONE, NONE, NONE, NONE);
     expect_set(AGV_FAULT_EPS_TEMP_ABOVE_110, &changes.changed);
     expect_set(NONE, &monitor.tripping);
     set(AGV_FAULT_EPS_TEMP_ABOVE_110, false);
     agv_fault_set_put(&config.trips, AGV_FAULT_EPS_TEMP_ABOVE_110, true);
     evaluate();
     set(AGV_FAULT_EPS_TEMP_ABOVE_110, true);
-    evaluate();
-    expect_summary(AGV_FAULT_EPS_TEMP_ABOVE_110, AGV_FAULT_EPS_TEMP_ABOVE_110, NONE, NONE);
+    expect_evaluated(AGV_FAULT_EPS_TEMP_ABOVE_110, AGV_FAULT_EPS_TEMP_ABOVE_110, NONE, NONE);
 }
 
 /* A fault that begins and ends between two evaluations is not reported. */
 void test_a_fault_that_has_ended_before_the_evaluation_is_no_change(void) {
     set(AGV_FAULT_BUS_OFF, true);
     set(AGV_FAULT_BUS_OFF, false);
-    evaluate();
-    expect_summary(NONE, NONE, NONE, NONE);
+    expect_evaluated(NONE, NONE, NONE, NONE);
     expect_set(NONE, &changes.changed);
 }
 
@@ -239,8 +233,7 @@ void test_the_highest_ranking_one_of_each_kind(void) {
     set(AGV_FAULT_S_DRIVER_ALARM, true);
     set(AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, true);
     set(AGV_FAULT_VCU_AI_CAN_LOST, true);
-    evaluate();
-    expect_summary(AGV_FAULT_S_DRIVER_ALARM, AGV_FAULT_S_DRIVER_ALARM, AGV_FAULT_VCU_AI_CAN_LOST, NONE);
+    expect_evaluated(AGV_FAULT_S_DRIVER_ALARM, AGV_FAULT_S_DRIVER_ALARM, AGV_FAULT_VCU_AI_CAN_LOST, NONE);
     set(AGV_FAULT_CONFIG_INVALID, true);
     set(AGV_FAULT_MEMORY_CORRUPTED, true);
     evaluate();
@@ -274,8 +267,7 @@ TEST_CASE(AGV_FAULT_AI_HEARTBEAT_LOST)
 TEST_CASE(AGV_FAULT_AI_HEARTBEAT_STUCK)
 void test_a_lost_ai_computer_warns_while_that_is_asked_for(unsigned fault) {
     set(fault, true);
-    evaluate();
-    expect_summary(NONE, NONE, NONE, NONE);
+    expect_evaluated(NONE, NONE, NONE, NONE);
     expect_set((unsigned)fault, &changes.changed);
     evaluate_engaged();
     expect_summary(fault, NONE, fault, NONE);
@@ -284,16 +276,14 @@ void test_a_lost_ai_computer_warns_while_that_is_asked_for(unsigned fault) {
     evaluate_engaged();
     expect_summary(NONE, NONE, fault, NONE);
     expect_set(NONE, &changes.changed);
-    evaluate();
-    expect_summary(NONE, NONE, NONE, NONE);
+    expect_evaluated(NONE, NONE, NONE, NONE);
     expect_set(fault, &changes.changed);
     expect_set(fault, &changes.was_trip);
 }
 
 void test_other_faults_of_the_ai_computer_trip_in_manual_too(void) {
     set(AGV_FAULT_GEAR_COMMAND_TIMEOUT, true);
-    evaluate();
-    expect_summary(AGV_FAULT_GEAR_COMMAND_TIMEOUT, NONE, AGV_FAULT_GEAR_COMMAND_TIMEOUT, NONE);
+    expect_evaluated(AGV_FAULT_GEAR_COMMAND_TIMEOUT, NONE, AGV_FAULT_GEAR_COMMAND_TIMEOUT, NONE);
 }
 
 /* ---- The latch, and the fault on the LED ---- */
@@ -326,7 +316,6 @@ void test_latched_trips_are_shown_before_warnings(void) {
 /* Shows: FSM-7, LED-1 */
 void test_the_reason_of_an_earlier_run_is_shown(void) {
     agv_fault_monitor_latch_one(&monitor, AGV_FAULT_VCU_HEARTBEAT_LOST);
-    evaluate();
-    expect_summary(NONE, NONE, NONE, NONE);
+    expect_evaluated(NONE, NONE, NONE, NONE);
     TEST_ASSERT_EQUAL_UINT32(AGV_FAULT_VCU_HEARTBEAT_LOST, agv_fault_monitor_shown(&monitor));
 }

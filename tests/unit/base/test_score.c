@@ -24,18 +24,18 @@ static void expect_score(unsigned value, bool present) {
     TEST_ASSERT_EQUAL(present, score.present);
 }
 
+static void expect_score_after(const char *of, uint32_t n, unsigned value, bool present) {
+    frames(of, n);
+    expect_score(value, present);
+}
+
 /* Shows: SUP-4, SUP-5 */
 void test_a_bad_frame_adds_two_and_a_good_one_takes_one_away(void) {
-    frames("x", 3);
-    expect_score(2, false);
-    frames(".", 3);
-    expect_score(1, false);
-    frames("x", 3);
-    expect_score(3, false);
-    frames("...", 3);
-    expect_score(0, false);
-    frames(".", 3);
-    expect_score(0, false);
+    expect_score_after("x", 3, 2, false);
+    expect_score_after(".", 3, 1, false);
+    expect_score_after("x", 3, 3, false);
+    expect_score_after("...", 3, 0, false);
+    expect_score_after(".", 3, 0, false);
 }
 
 /* N bad ones in a row, for every N that may be configured. */
@@ -47,54 +47,38 @@ void test_n_bad_frames_in_a_row_raise_the_fault(void) {
             frames("x", n);
             TEST_ASSERT_FALSE(score.present);
         }
-        frames("x", n);
-        expect_score(2 * n, true);
+        expect_score_after("x", n, 2 * n, true);
     }
 }
 
 /* It stays within 2 N: six good frames end N of 3, however many bad ones there were. */
 /* Shows: SUP-4 */
 void test_the_fault_lasts_until_the_score_is_0(void) {
-    frames("xxxxxxxxxxxxxxxxxxxx", 3);
-    expect_score(6, true);
-    frames(".....", 3);
-    expect_score(1, true);
-    frames("x", 3);
-    expect_score(3, true);
-    frames("..", 3);
-    expect_score(1, true);
-    frames(".", 3);
-    expect_score(0, false);
-    frames("xx", 3);
-    expect_score(4, false); /* from the beginning */
+    expect_score_after("xxxxxxxxxxxxxxxxxxxx", 3, 6, true);
+    expect_score_after(".....", 3, 1, true);
+    expect_score_after("x", 3, 3, true);
+    expect_score_after("..", 3, 1, true);
+    expect_score_after(".", 3, 0, false);
+    expect_score_after("xx", 3, 4, false); /* from the beginning */
 }
 
 /* With N of 2 as well: only with N of 1 the last frame decides. */
 /* Shows: SUP-4 */
 void test_a_count_of_two_is_scored_too(void) {
-    frames("x.", 2);
-    expect_score(1, false);
-    frames("x.", 2);
-    expect_score(2, false);
-    frames("x", 2);
-    expect_score(4, true);
-    frames("...", 2);
-    expect_score(1, true);
-    frames(".", 2);
-    expect_score(0, false);
+    expect_score_after("x.", 2, 1, false);
+    expect_score_after("x.", 2, 2, false);
+    expect_score_after("x", 2, 4, true);
+    expect_score_after("...", 2, 1, true);
+    expect_score_after(".", 2, 0, false);
 }
 
 /* From 5 two more do not go beyond 6. */
 void test_the_limit_holds_from_an_odd_score_as_well(void) {
-    frames("xxx.", 3);
-    expect_score(5, true);
-    frames("x", 3);
-    expect_score(6, true);
+    expect_score_after("xxx.", 3, 5, true);
+    expect_score_after("x", 3, 6, true);
     setUp();
-    frames("x.xx", 3);
-    expect_score(5, false);
-    frames("x", 3);
-    expect_score(6, true);
+    expect_score_after("x.xx", 3, 5, false);
+    expect_score_after("x", 3, 6, true);
 }
 
 /* A bad and a good frame add 1: 2 N - 2 such pairs and one more bad frame are some 4 N frames. */
@@ -126,8 +110,7 @@ void test_with_n_of_1_the_last_frame_decides(void) {
     for (unsigned i = 0; i < 20; i++) {
         frames("x", 1);
         TEST_ASSERT_TRUE(score.present);
-        frames((i % 2 == 0) ? "." : "x.", 1);
-        expect_score(0, false);
+        expect_score_after((i % 2 == 0) ? "." : "x.", 1, 0, false);
     }
 }
 
@@ -150,45 +133,43 @@ static void expect_budget(unsigned value_ms, bool present) {
     TEST_ASSERT_EQUAL(present, budget.present);
 }
 
+static void expect_budget_after(bool condition, unsigned ms, uint32_t limit_ms, unsigned value_ms, bool present) {
+    run(condition, ms, limit_ms);
+    expect_budget(value_ms, present);
+}
+
+/* The same in one tick. */
+static void expect_budget_after_tick(bool condition, uint32_t ms, uint32_t limit_ms, unsigned value_ms, bool present) {
+    agv_budget_add(&budget, condition, ms, limit_ms);
+    expect_budget(value_ms, present);
+}
+
 /* Shows: SUP-10, SUP-11, SUP-12 */
 void test_a_condition_that_is_seen_for_the_first_time_has_lasted_for_0_ms(void) {
-    agv_budget_add(&budget, true, 1, 500);
-    expect_budget(0, false);
-    agv_budget_add(&budget, true, 1, 500);
-    expect_budget(1, false);
+    expect_budget_after_tick(true, 1, 500, 0, false);
+    expect_budget_after_tick(true, 1, 500, 1, false);
 }
 
 /* Shows: SUP-10, SUP-11, SUP-12 */
 void test_the_ms_before_the_tick_that_sees_the_end_counts(void) {
     begin(true, 500);
-    run(true, 9, 500);
-    expect_budget(9, false);
-    agv_budget_add(&budget, false, 1, 500);
-    expect_budget(10, false);
-    agv_budget_add(&budget, false, 1, 500);
-    expect_budget(10, false);
-    agv_budget_add(&budget, false, 1, 500);
-    expect_budget(9, false);
+    expect_budget_after(true, 9, 500, 9, false);
+    expect_budget_after_tick(false, 1, 500, 10, false);
+    expect_budget_after_tick(false, 1, 500, 10, false);
+    expect_budget_after_tick(false, 1, 500, 9, false);
     begin(true, 500);
-    agv_budget_add(&budget, true, 490, 500);
-    expect_budget(499, false);
-    agv_budget_add(&budget, false, 1, 500);
-    expect_budget(500, true);
+    expect_budget_after_tick(true, 490, 500, 499, false);
+    expect_budget_after_tick(false, 1, 500, 500, true);
 }
 
 /* It hides no condition that began since the last tick, and goes on with none that ended. */
 /* Shows: SUP-10, SUP-11, SUP-12, TIM-4 */
 void test_a_late_tick_counts_by_what_it_sees(void) {
-    agv_budget_add(&budget, true, 2, 500);
-    expect_budget(2, false);
-    agv_budget_add(&budget, true, 300, 500);
-    expect_budget(302, false);
-    agv_budget_add(&budget, false, 4, 500);
-    expect_budget(300, false);
-    agv_budget_add(&budget, false, 300, 500);
-    expect_budget(150, false);
-    agv_budget_add(&budget, true, 351, 500);
-    expect_budget(500, true);
+    expect_budget_after_tick(true, 2, 500, 2, false);
+    expect_budget_after_tick(true, 300, 500, 302, false);
+    expect_budget_after_tick(false, 4, 500, 300, false);
+    expect_budget_after_tick(false, 300, 500, 150, false);
+    expect_budget_after_tick(true, 351, 500, 500, true);
 }
 
 /* Above idle in all but each second of ticks that come every 10 ms. */
@@ -205,15 +186,11 @@ void test_a_condition_that_pauses_at_each_second_late_tick_is_found(void) {
 void test_a_frame_counts_nothing(void) {
     begin(true, 500);
     agv_budget_add(&budget, false, 0, 500);
-    agv_budget_add(&budget, true, 1, 500);
-    expect_budget(1, false);
+    expect_budget_after_tick(true, 1, 500, 1, false);
     begin(false, 500); /* 2 */
-    agv_budget_add(&budget, true, 0, 500);
-    expect_budget(2, false);
-    agv_budget_add(&budget, true, 1, 500);
-    expect_budget(2, false);
-    agv_budget_add(&budget, true, 1, 500);
-    expect_budget(3, false);
+    expect_budget_after_tick(true, 0, 500, 2, false);
+    expect_budget_after_tick(true, 1, 500, 2, false);
+    expect_budget_after_tick(true, 1, 500, 3, false);
 }
 
 /* A ms without the condition that has not been subtracted yet is kept while the condition lasts. */
@@ -225,20 +202,16 @@ void test_half_ms_are_kept_across_the_condition(void) {
     } ticks[] = {{true, 0},  {true, 1}, {true, 2}, {true, 3},  {false, 4}, {true, 4},  {false, 5}, {true, 4}, {true, 5},
                  {false, 6}, {true, 6}, {true, 7}, {false, 8}, {false, 7}, {false, 7}, {true, 6},  {true, 7}};
     for (unsigned i = 0; i < sizeof ticks / sizeof ticks[0]; i++) {
-        agv_budget_add(&budget, ticks[i].condition, 1, 100);
-        expect_budget(ticks[i].value_ms, false);
+        expect_budget_after_tick(ticks[i].condition, 1, 100, ticks[i].value_ms, false);
     }
 }
 
 /* Shows: SUP-10, SUP-11, SUP-12 */
 void test_the_fault_is_raised_at_the_limit_of_the_budget(void) {
     begin(true, 500);
-    run(true, 499, 500);
-    expect_budget(499, false);
-    run(true, 1, 500);
-    expect_budget(500, true);
-    run(true, 10000, 500);
-    expect_budget(500, true);
+    expect_budget_after(true, 499, 500, 499, false);
+    expect_budget_after(true, 1, 500, 500, true);
+    expect_budget_after(true, 10000, 500, 500, true);
 }
 
 /* Shows: SUP-10, SUP-11, SUP-12 */
@@ -246,19 +219,13 @@ void test_every_second_ms_without_the_condition_takes_one_away(void) {
     begin(true, 500);
     run(true, 500, 500);
     begin(false, 500);
-    run(false, 1, 500);
-    expect_budget(500, true);
-    run(false, 1, 500);
-    expect_budget(499, true);
-    run(false, 997, 500);
-    expect_budget(1, true);
-    run(false, 1, 500);
-    expect_budget(0, false);
-    run(false, 7, 500);
-    expect_budget(0, false);
+    expect_budget_after(false, 1, 500, 500, true);
+    expect_budget_after(false, 1, 500, 499, true);
+    expect_budget_after(false, 997, 500, 1, true);
+    expect_budget_after(false, 1, 500, 0, false);
+    expect_budget_after(false, 7, 500, 0, false);
     begin(true, 500);
-    run(true, 499, 500);
-    expect_budget(499, false);
+    expect_budget_after(true, 499, 500, 499, false);
 }
 
 /* 19 ms with the condition, 1 ms without: only every second good ms takes one away. */
@@ -285,8 +252,7 @@ void test_the_good_time_that_empties_a_budget(void) {
         agv_budget_add(&budget, i % 2 == 0, 1, 100);
     }
     expect_budget(99, false); /* 98 rows of 4 ms are 98 ms, and 1 ms more */
-    agv_budget_add(&budget, false, 1, 100);
-    expect_budget(100, true);
+    expect_budget_after_tick(false, 1, 100, 100, true);
 }
 
 /* An empty budget also forgets an odd good ms. */
@@ -294,16 +260,12 @@ void test_an_empty_budget_begins_anew(void) {
     begin(true, 100); /* a good ms before it */
     run(true, 1, 100);
     begin(false, 100);
-    run(false, 1, 100);
-    expect_budget(2, false);
-    run(false, 1, 100);
-    expect_budget(1, false);
-    run(false, 4, 100);
-    expect_budget(0, false);
+    expect_budget_after(false, 1, 100, 2, false);
+    expect_budget_after(false, 1, 100, 1, false);
+    expect_budget_after(false, 4, 100, 0, false);
     begin(true, 100); /* the third good ms of an empty budget */
     begin(false, 100);
-    run(false, 1, 100);
-    expect_budget(1, false);
+    expect_budget_after(false, 1, 100, 1, false);
 }
 
 /* Late steps bring several ms at once: the same as one by one, while the condition is what it was. */

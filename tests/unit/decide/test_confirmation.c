@@ -35,19 +35,26 @@ static void expect(bool unconfirmed) {
     TEST_ASSERT_EQUAL(unconfirmed, confirmation.unconfirmed);
 }
 
+static void expect_fault_after(uint32_t ms, bool autopilot_off, bool in_park) {
+    run(ms, autopilot_off, in_park);
+    expect(true);
+}
+
+static void expect_no_fault_after(uint32_t ms, bool autopilot_off, bool in_park) {
+    run(ms, autopilot_off, in_park);
+    expect(false);
+}
+
 /* The fault must come exactly this many ms from now, in which the ticks see this. */
 static void expect_after(uint32_t ms, bool autopilot_off, bool in_park) {
-    run(ms - 1, autopilot_off, in_park);
-    expect(false);
-    run(1, autopilot_off, in_park);
-    expect(true);
+    expect_no_fault_after(ms - 1, autopilot_off, in_park);
+    expect_fault_after(1, autopilot_off, in_park);
 }
 
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
 void test_autopilot_off_may_be_missing_for_500_ms(void) {
     expect_after(500, false, true);
-    run(100, false, true);
-    expect(true);
+    expect_fault_after(100, false, true);
     step(0, true, true); /* a frame confirms */
     expect(false);
 }
@@ -58,11 +65,9 @@ TEST_CASE(true, 500)
 TEST_CASE(false, 501)
 void test_the_time_begins_with_a_tick(bool at_tick, uint32_t ticks) {
     agv_confirmation_start(&confirmation, &timers, at_tick);
-    run(ticks - 1, false, true);
-    expect(false);
+    expect_no_fault_after(ticks - 1, false, true);
     TEST_ASSERT_EQUAL_UINT16(499, confirmation.off.sum_ms);
-    run(1, false, true);
-    expect(true);
+    expect_fault_after(1, false, true);
 }
 
 /* What the last tick saw stays: missing there and confirmed in a frame, and the other way round. */
@@ -75,8 +80,7 @@ void test_a_frame_between_two_ticks_does_not_count(void) {
     step(0, false, true);
     expect(false);
     TEST_ASSERT_EQUAL_UINT16(499, confirmation.off.sum_ms);
-    run(1, false, true);
-    expect(true);
+    expect_fault_after(1, false, true);
     agv_confirmation_start(&confirmation, &timers, false);
     begin(true, true);
     step(0, false, true);
@@ -88,8 +92,7 @@ void test_a_frame_between_two_ticks_does_not_count(void) {
 /* From the first P on, however often it is sent. */
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
 void test_p_may_be_missing_for_500_ms_since_the_first_p_was_sent(void) {
-    run(3000, true, false);
-    expect(false);
+    expect_no_fault_after(3000, true, false);
     agv_confirmation_park_sent(&confirmation);
     run(300, true, false);
     agv_confirmation_park_sent(&confirmation);
@@ -126,14 +129,12 @@ void test_the_two_sums_are_not_added_up(void) {
 void test_a_confirmation_that_comes_and_goes(void) {
     for (unsigned i = 0; i < 4; i++) {
         run(100, false, true);
-        run(4999, true, true);
-        expect(false);
+        expect_no_fault_after(4999, true, true);
     }
     run(99, false, true); /* 101 since the trip, 3 times 100, 98 */
     expect(false);
     TEST_ASSERT_EQUAL_UINT16(499, confirmation.off.sum_ms);
-    run(1, false, true);
-    expect(true);
+    expect_fault_after(1, false, true);
 }
 
 /* Shows: FSM-4 */
@@ -143,10 +144,8 @@ void test_5_s_of_both_without_a_break_clear_the_sums(void) {
     step(0, true, true);
     run(5000, true, true);
     begin(false, false);
-    run(499, false, false);
-    expect(false);
-    run(1, false, true);
-    expect(true);
+    expect_no_fault_after(499, false, false);
+    expect_fault_after(1, false, true);
 }
 
 /* A frame without P restarts the 5 s, even while autopilot off stays confirmed. */
@@ -159,8 +158,7 @@ void test_a_break_of_either_begins_the_5_s_anew(void) {
     run(4999, true, true);
     begin(false, true);
     expect(false);
-    run(1, false, true);
-    expect(true);
+    expect_fault_after(1, false, true);
 }
 
 /* The fault ends when both are confirmed, and is raised again by the next unconfirmed ms, until 5 s have cleared the
@@ -168,12 +166,10 @@ void test_a_break_of_either_begins_the_5_s_anew(void) {
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
 void test_a_sum_at_its_limit_raises_it_again_at_once(void) {
     agv_confirmation_park_sent(&confirmation);
-    run(500, false, true);
-    expect(true);
+    expect_fault_after(500, false, true);
     run(10, true, false); /* only one of them is confirmed */
     expect(true);
-    run(4000, true, true);
-    expect(false);
+    expect_no_fault_after(4000, true, true);
     step(0, false, true); /* no ms has passed */
     expect(false);
     begin(false, true);
@@ -181,8 +177,7 @@ void test_a_sum_at_its_limit_raises_it_again_at_once(void) {
     step(0, true, true);
     run(5000, true, true);
     begin(false, true);
-    run(499, false, true);
-    expect(false);
+    expect_no_fault_after(499, false, true);
 }
 
 /* A full sum does not change the other one. */
@@ -191,11 +186,9 @@ void test_a_full_sum_of_the_one_raises_nothing_for_the_other(void) {
     agv_confirmation_start(&confirmation, &timers, false);
     agv_confirmation_park_sent(&confirmation);
     begin(false, true);
-    run(500, false, true);
-    expect(true);
+    expect_fault_after(500, false, true);
     step(0, true, true);
-    run(1, true, true);
-    expect(false);
+    expect_no_fault_after(1, true, true);
     begin(true, false);
     expect_after(500, true, false);
 }
@@ -205,8 +198,7 @@ void test_a_full_sum_of_the_one_raises_nothing_for_the_other(void) {
 void test_a_confirmation_within_the_last_ms_is_in_time(void) {
     run(499, false, true);
     step(0, true, true);
-    run(1, true, true);
-    expect(false);
+    expect_no_fault_after(1, true, true);
     TEST_ASSERT_EQUAL_UINT16(500, confirmation.off.sum_ms);
     begin(false, true);
     expect(true);
@@ -217,13 +209,10 @@ void test_a_confirmation_within_the_last_ms_is_in_time(void) {
 void test_a_confirmation_that_flickers_with_the_ticks(void) {
     for (unsigned i = 0; i < 499; i++) {
         run(1, true, true);
-        run(1, false, true);
-        expect(false);
+        expect_no_fault_after(1, false, true);
     }
-    run(1, true, true);
-    expect(false);
-    run(1, false, true);
-    expect(true);
+    expect_no_fault_after(1, true, true);
+    expect_fault_after(1, false, true);
 }
 
 /* Late steps count with their whole time, and the sums saturate. */
@@ -254,11 +243,9 @@ void test_a_late_tick_counts_by_what_it_sees(void) {
 /* Shows: FSM-4 */
 void test_a_trip_clears_the_sums(void) {
     agv_confirmation_park_sent(&confirmation);
-    run(600, false, false);
-    expect(true);
+    expect_fault_after(600, false, false);
     agv_confirmation_start(&confirmation, &timers, true);
     expect(false);
-    run(499, false, false);
-    expect(false);
+    expect_no_fault_after(499, false, false);
     TEST_ASSERT_EQUAL_UINT16(1, confirmation.park.sum_ms); /* no P was sent yet: only the ms after the trip */
 }

@@ -27,6 +27,18 @@ static void trip(uint32_t ms) {
     agv_hold_trip(&hold, &vehicle, &timers);
 }
 
+/* This angle is recent at the trip, so it is held. */
+static void trip_with_9123(void) {
+    measured(9123, 0);
+    trip(0);
+}
+
+/* A 067h after the trip. */
+static void measured_later(uint16_t raw, uint32_t ms) {
+    measured(raw, ms);
+    agv_hold_take(&hold, &vehicle);
+}
+
 void setUp(void) {
     agv_config_defaults(&config);
     agv_timers_set_time(&timers, at(0));
@@ -49,8 +61,7 @@ void test_without_any_067h_none_is_held(void) {
     expect_none();
     trip(0);
     expect_none();
-    measured(9123, 100);
-    agv_hold_take(&hold, &vehicle);
+    measured_later(9123, 100);
     expect_held(9123);
 }
 
@@ -70,11 +81,9 @@ void test_an_angle_of_up_to_50_ms_before_the_trip_is_held(void) {
 void test_after_the_trip_the_first_one_is_held(void) {
     measured(9123, 0);
     trip(200);
-    measured(5000, 201);
-    agv_hold_take(&hold, &vehicle);
+    measured_later(5000, 201);
     expect_held(5000);
-    measured(6000, 211);
-    agv_hold_take(&hold, &vehicle);
+    measured_later(6000, 211);
     expect_held(5000);
     trip(212); /* another trip holds its own angle */
     expect_held(6000);
@@ -83,8 +92,7 @@ void test_after_the_trip_the_first_one_is_held(void) {
 /* The angle of an earlier trip is not kept, even without a recent one. */
 /* Shows: FSM-10 */
 void test_another_trip_forgets_an_old_angle(void) {
-    measured(9123, 0);
-    trip(0);
+    trip_with_9123();
     expect_held(9123);
     trip(51);
     expect_none();
@@ -93,21 +101,14 @@ void test_another_trip_forgets_an_old_angle(void) {
 /* Manual mode drops it, because the operator steers; so does a reset. */
 /* Shows: FSM-10 */
 void test_a_held_angle_is_dropped_and_another_one_held(void) {
-    measured(9123, 0);
-    trip(0);
+    trip_with_9123();
     agv_hold_drop(&hold);
     expect_none();
-    measured(4000, 500);
-    agv_hold_take(&hold, &vehicle);
+    measured_later(4000, 500);
     expect_held(4000);
 }
 
 /* The angle that a 067h measures later is held only after 2 s without 065h, and until 065h is sent again. */
-static void measured_later(uint16_t raw, uint32_t ms) {
-    measured(raw, ms);
-    agv_hold_take(&hold, &vehicle);
-}
-
 static void follow(uint32_t elapsed_ms) {
     agv_hold_follow(&hold, &timers, elapsed_ms);
 }
@@ -120,8 +121,7 @@ static void left(void) {
 
 /* Shows: FSM-10 */
 void test_after_2_s_without_065h_the_angle_is_taken_anew(void) {
-    measured(9123, 0);
-    trip(0);
+    trip_with_9123();
     follow(1999);
     measured_later(4000, 2000);
     expect_held(9123);
@@ -141,8 +141,7 @@ void test_after_2_s_without_065h_the_angle_is_taken_anew(void) {
 /* While no 065h leaves, an angle that was taken anew is dropped when it is older than hold_age_ms (50). */
 /* Shows: FSM-10 */
 void test_an_angle_that_was_taken_anew_goes_out_of_date(void) {
-    measured(9123, 0);
-    trip(0);
+    trip_with_9123();
     follow(2000);
     measured_later(4000, 2010);
     agv_timers_advance(&timers, &config, at(2060), 0);
@@ -166,8 +165,7 @@ static void renew(uint32_t ms, uint32_t elapsed_ms) {
 /* A tick that comes more than 50 ms (hold_age_ms) after the last one: the frames before it were handled late. */
 /* Shows: FSM-10 */
 void test_a_late_tick_replaces_an_angle_of_the_frames_before_it(void) {
-    measured(9123, 0);
-    trip(0);
+    trip_with_9123();
     measured(4000, 40);
     renew(40, 0); /* a frame */
     expect_held(9123);
@@ -180,8 +178,7 @@ void test_a_late_tick_replaces_an_angle_of_the_frames_before_it(void) {
 
 /* Shows: FSM-10 */
 void test_a_tick_in_time_keeps_it(void) {
-    measured(9123, 0);
-    trip(0);
+    trip_with_9123();
     measured(4000, 40);
     renew(50, 50);
     expect_held(9123);
@@ -191,21 +188,18 @@ void test_a_tick_in_time_keeps_it(void) {
 
 /* Shows: FSM-10 */
 void test_a_late_tick_drops_it_if_the_newest_is_older_than_50_ms(void) {
-    measured(9123, 0);
-    trip(0);
+    trip_with_9123();
     measured(4000, 40);
     renew(91, 91);
     expect_none();
-    measured(5000, 92);
-    agv_hold_take(&hold, &vehicle);
+    measured_later(5000, 92);
     renew(93, 2);
     expect_held(5000);
 }
 
 /* Shows: FSM-10 */
 void test_a_late_tick_holds_nothing_that_was_dropped(void) {
-    measured(9123, 0);
-    trip(0);
+    trip_with_9123();
     agv_hold_drop(&hold);
     renew(40, 60);
     expect_none();
@@ -214,8 +208,7 @@ void test_a_late_tick_holds_nothing_that_was_dropped(void) {
 /* Each 065h that is sent begins the 2 s again, and so does a trip. A frame takes no time. */
 /* Shows: FSM-10 */
 void test_the_2_s_without_065h_are_uninterrupted(void) {
-    measured(9123, 0);
-    trip(0);
+    trip_with_9123();
     follow(1999);
     left();
     follow(1999);
@@ -231,8 +224,7 @@ void test_the_2_s_without_065h_are_uninterrupted(void) {
 
 /* Shows: INT-5 */
 void test_a_flipped_bit_in_it_or_in_its_complement_drops_it(void) {
-    measured(9123, 0);
-    trip(0);
+    trip_with_9123();
     for (unsigned bit = 0; bit < 16; bit++) {
         hold.raw = (uint16_t)(hold.raw ^ (1u << bit));
         expect_none();
@@ -256,8 +248,7 @@ void test_every_angle_may_be_held(void) {
 /* A 065h that has not left the controller, or is discarded there, does not begin the 2 s again. */
 /* Shows: FSM-10, SUP-7 */
 void test_a_065h_that_does_not_leave_does_not_begin_the_2_s_again(void) {
-    measured(9123, 0);
-    trip(0);
+    trip_with_9123();
     follow(1999);
     agv_hold_handed_over(&hold);
     agv_hold_withdrawn(&hold);
@@ -274,8 +265,7 @@ void test_a_065h_that_does_not_leave_does_not_begin_the_2_s_again(void) {
 /* Only in a stalled transmitter, and only when it may not be sent. */
 /* Shows: FSM-10, SUP-7 */
 void test_a_065h_that_may_not_be_sent_is_stuck_in_a_stalled_transmitter(void) {
-    measured(9123, 0);
-    trip(0);
+    trip_with_9123();
     TEST_ASSERT_FALSE(agv_hold_is_stuck(&hold, true, false)); /* there is none */
     agv_hold_handed_over(&hold);
     TEST_ASSERT_FALSE(agv_hold_is_stuck(&hold, false, false));

@@ -48,9 +48,14 @@ static void lose_vcu(void) {
     step(1);
 }
 
-static void press(uint32_t ms) {
+/* The button is down for this long, and stays down. */
+static void hold(uint32_t ms) {
     frame(true);
     run(ms);
+}
+
+static void press(uint32_t ms) {
+    hold(ms);
     release();
 }
 
@@ -94,8 +99,7 @@ TEST_CASE(1000, 1)
 TEST_CASE(3000, 1)
 TEST_CASE(5000, 1)
 void test_a_press_of_1_s_to_5_s_resets_at_its_release(uint32_t ms, uint32_t expected) {
-    frame(true);
-    run(ms);
+    hold(ms);
     expect_nothing();
     release();
     TEST_ASSERT_EQUAL_UINT32(expected, resets);
@@ -107,8 +111,7 @@ void test_a_press_of_1_s_to_5_s_resets_at_its_release(uint32_t ms, uint32_t expe
 /* Reported once, at 5 s, not again at its release. */
 /* Shows: FSM-3 */
 void test_a_press_of_more_than_5_s_is_in_vain(void) {
-    frame(true);
-    run(5001);
+    hold(5001);
     expect_nothing();
     run(1);
     expect_in_vain(AGV_MISSING_RELEASED);
@@ -166,8 +169,7 @@ static void expect_release_in_vain_then_reset(void) {
 /* Held at the trip and released 1 s later. */
 /* Shows: FSM-3 */
 void test_a_press_from_before_the_trip_does_not_count(void) {
-    frame(true);
-    run(500);
+    hold(500);
     agv_reset_button_trip(&reset, &timers);
     run(1500);
     expect_release_in_vain_then_reset();
@@ -200,8 +202,7 @@ void test_a_press_after_a_trip_from_standby_counts(void) {
 void test_a_button_that_is_stuck_resets_nothing(void) {
     reset = (agv_reset_button_t){0};
     run(2000);
-    frame(true);
-    run(6000);
+    hold(6000);
     expect_in_vain(AGV_MISSING_BUTTON | AGV_MISSING_RELEASED);
 }
 
@@ -212,8 +213,7 @@ TEST_CASE(2, false)
 TEST_CASE(3, true)
 void test_a_glitch_of_a_button_that_is_stuck_is_no_rising_edge(uint32_t frames, bool resets_then) {
     reset = (agv_reset_button_t){0};
-    frame(true);
-    run(3000);
+    hold(3000);
     for (uint32_t i = 0; i < frames; i++) {
         frame(false);
     }
@@ -264,8 +264,7 @@ void test_frames_of_a_vcu_that_is_not_alive_are_ignored(void) {
     agv_reset_button_report(&reset, false, false, false);
     run(10);
     expect_nothing();
-    frame(true);
-    run(500);
+    hold(500);
     agv_reset_button_report(&reset, false, false, false);
     run(500);
     expect_nothing();
@@ -286,8 +285,7 @@ TEST_CASE(AGV_MISSING_MANUAL)
 TEST_CASE(AGV_MISSING_MESSAGES)
 TEST_CASE(AGV_MISSING_THROTTLE)
 void test_conditions_missing_at_any_time_in_the_last_second(uint32_t condition) {
-    frame(true);
-    run(2000);
+    hold(2000);
     lacking = condition;
     step(0); /* a frame is enough */
     lacking = 0;
@@ -295,8 +293,7 @@ void test_conditions_missing_at_any_time_in_the_last_second(uint32_t condition) 
     release();
     expect_in_vain(condition);
     in_vain = 0;
-    frame(true);
-    run(2000);
+    hold(2000);
     lacking = condition;
     step(0);
     lacking = 0;
@@ -308,8 +305,7 @@ void test_conditions_missing_at_any_time_in_the_last_second(uint32_t condition) 
 /* The conditions must also hold in the releasing frame. */
 /* Shows: FSM-3 */
 void test_a_condition_missing_in_the_releasing_frame(void) {
-    frame(true);
-    run(3000);
+    hold(3000);
     lacking = AGV_MISSING_MANUAL;
     release();
     expect_in_vain(AGV_MISSING_MANUAL);
@@ -319,8 +315,7 @@ void test_a_condition_missing_in_the_releasing_frame(void) {
 /* Shows: FSM-3 */
 void test_all_missing_conditions_are_reported(void) {
     lacking = AGV_MISSING_EPS_HEARTBEAT;
-    frame(true);
-    run(1000);
+    hold(1000);
     lacking = AGV_MISSING_STANDSTILL;
     run(500);
     lacking = AGV_MISSING_THROTTLE | AGV_MISSING_STATE;
@@ -351,8 +346,7 @@ void test_time_before_the_trip_does_not_count(void) {
 /* Only the VCU is named, not the conditions that its loss affects. */
 /* Shows: FSM-3 */
 void test_a_press_that_the_loss_of_the_vcu_ends(void) {
-    frame(true);
-    run(2000);
+    hold(2000);
     lose_vcu();
     expect_in_vain(AGV_MISSING_VCU_HEARTBEAT);
     run(100);
@@ -362,8 +356,7 @@ void test_a_press_that_the_loss_of_the_vcu_ends(void) {
 /* Conditions that were missing before its loss are named, too. */
 /* Shows: FSM-3 */
 void test_a_press_in_vain_that_the_loss_of_the_vcu_ends(void) {
-    frame(true);
-    run(1500);
+    hold(1500);
     lacking = AGV_MISSING_THROTTLE;
     run(1);
     lose_vcu();
@@ -372,8 +365,7 @@ void test_a_press_in_vain_that_the_loss_of_the_vcu_ends(void) {
 
 /* Shows: FSM-3 */
 void test_a_short_press_ended_by_the_loss_of_the_vcu_is_not_reported(void) {
-    frame(true);
-    run(900);
+    hold(900);
     lose_vcu();
     run(1000);
     expect_nothing();
@@ -382,13 +374,11 @@ void test_a_short_press_ended_by_the_loss_of_the_vcu_is_not_reported(void) {
 /* The state of the button is cleared. A button pressed all the time must be released first. */
 /* Shows: FSM-3 */
 void test_a_press_from_before_the_vcu_came_back_resets_nothing(void) {
-    frame(true);
-    run(500);
+    hold(500);
     lose_vcu();
     lacking = 0;
     run(100);
-    frame(true);
-    run(2000);
+    hold(2000);
     expect_release_in_vain_then_reset();
 }
 
@@ -402,8 +392,7 @@ static void frame_without_receiver(bool down) {
 /* Without the receiver "not pressed" does not count as a release. */
 /* Shows: FSM-3 */
 void test_a_press_that_the_loss_of_the_remote_ends(void) {
-    frame(true);
-    run(2000);
+    hold(2000);
     frame_without_receiver(false);
     expect_in_vain(AGV_MISSING_BUTTON);
     run(10);
@@ -419,16 +408,14 @@ void test_a_press_that_the_loss_of_the_remote_ends(void) {
 void test_a_press_from_before_the_remote_came_back_resets_nothing(void) {
     frame_without_receiver(false);
     run(2000);
-    frame(true);
-    run(2000);
+    hold(2000);
     expect_release_in_vain_then_reset();
 }
 
 /* A short press that ends with the receiver's loss is not reported, as any other short press. */
 /* Shows: FSM-3 */
 void test_a_short_press_ended_by_the_loss_of_the_remote_is_not_reported(void) {
-    frame(true);
-    run(999);
+    hold(999);
     frame_without_receiver(false);
     run(2000);
     expect_nothing();
@@ -458,8 +445,7 @@ void test_a_press_that_begins_while_the_receiver_is_lost(void) {
 void test_a_press_during_which_the_receiver_is_lost(void) {
     release();
     run(1);
-    frame(true);
-    run(100);
+    hold(100);
     frame_without_receiver(true);
     run(1500);
     release();
@@ -481,14 +467,12 @@ void test_the_time_for_which_all_conditions_hold_saturates(void) {
 /* Their time counts, up to what is needed. */
 void test_late_steps_count_with_all_their_time(void) {
     lacking = AGV_MISSING_ALL;
-    frame(true);
-    run(1000);
+    hold(1000);
     lacking = 0;
     step(999);
     release();
     TEST_ASSERT_EQUAL_UINT32(1, in_vain);
-    frame(true);
-    run(1);
+    hold(1);
     step(0xFFFFFFFFu);
     agv_timers_advance(&timers, &config, timers.now_ms + 1000, 0);
     release();

@@ -110,23 +110,25 @@ static void expect_state(agv_state_t state) {
     TEST_ASSERT_EQUAL_HEX8(state, machine.state);
 }
 
+static void expect_state_after(uint32_t ms, agv_state_t state) {
+    run(ms);
+    expect_state(state);
+}
+
 static void trip(agv_fault_t reason) {
     facts.raised = reason;
-    step(1);
-    expect_state(AGV_STATE_TRIPPED);
+    expect_state_after(1, AGV_STATE_TRIPPED);
 }
 
 static void to_standby(void) {
     step(0);
-    run(500);
-    expect_state(AGV_STATE_STANDBY);
+    expect_state_after(500, AGV_STATE_STANDBY);
 }
 
 static void to_safe(void) {
     to_standby();
     trip(AGV_FAULT_BUS_OFF);
-    step(1);
-    expect_state(AGV_STATE_SAFE);
+    expect_state_after(1, AGV_STATE_SAFE);
 }
 
 /* Shows: INT-5 */
@@ -148,11 +150,9 @@ void test_init_is_left_after_500_ms_without_a_break(void) {
     step(1);
     facts.missing = 0;
     step(1);
-    run(499);
-    expect_state(AGV_STATE_INIT);
+    expect_state_after(499, AGV_STATE_INIT);
     TEST_ASSERT_FALSE(machine.output_closed);
-    step(1);
-    expect_state(AGV_STATE_STANDBY);
+    expect_state_after(1, AGV_STATE_STANDBY);
     TEST_ASSERT_TRUE(machine.output_closed);
     TEST_ASSERT_EQUAL_HEX8(AGV_LATCH_OPEN, machine.latched);
 }
@@ -164,31 +164,25 @@ void test_conditions_that_keep_init(void) {
     for (unsigned i = 0; i < sizeof needed / sizeof needed[0]; i++) {
         setUp();
         facts.missing = needed[i];
-        run(1000);
-        expect_state(AGV_STATE_INIT);
+        expect_state_after(1000, AGV_STATE_INIT);
     }
     setUp();
     facts.moving = true;
-    run(1000);
-    expect_state(AGV_STATE_INIT);
+    expect_state_after(1000, AGV_STATE_INIT);
     setUp();
     facts.cause = AGV_FAULT_S_DRIVER_ALARM;
     facts.raised = AGV_FAULT_S_DRIVER_ALARM;
-    run(1000);
-    expect_state(AGV_STATE_INIT); /* no cause latches in INIT */
+    expect_state_after(1000, AGV_STATE_INIT); /* no cause latches in INIT */
     setUp();
     facts.ai_cause = AGV_FAULT_AI_HEARTBEAT_LOST;
-    run(1000);
-    expect_state(AGV_STATE_INIT);
+    expect_state_after(1000, AGV_STATE_INIT);
     setUp();
     facts.engaged = true; /* of 363h, some report manual and others both modes */
-    run(1000);
-    expect_state(AGV_STATE_INIT);
+    expect_state_after(1000, AGV_STATE_INIT);
     setUp();
     facts.missing = AGV_MISSING_STANDSTILL | AGV_MISSING_THROTTLE;
     facts.wheels_turn = true;
-    run(1000);
-    expect_state(AGV_STATE_STANDBY);
+    expect_state_after(1000, AGV_STATE_STANDBY);
 }
 
 /* Shows: STARTUP_TIMEOUT */
@@ -210,12 +204,10 @@ void test_after_10_s_the_start_reports_once_what_is_missing(void) {
 void test_an_unresettable_fault_trips_in_init_and_is_never_reset(void) {
     facts.raised = AGV_FAULT_BUS_OFF; /* not this one */
     facts.forever = AGV_FAULT_MEMORY_CORRUPTED;
-    step(1);
-    expect_state(AGV_STATE_TRIPPED);
+    expect_state_after(1, AGV_STATE_TRIPPED);
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_MEMORY_CORRUPTED, machine.first_reason);
     facts.forever = AGV_FAULT_NONE; /* even if its cause were gone */
-    run(10);
-    expect_state(AGV_STATE_SAFE);
+    expect_state_after(10, AGV_STATE_SAFE);
     TEST_ASSERT_EQUAL_HEX32(AGV_MISSING_TRIP_CAUSE, lacks());
     TEST_ASSERT_FALSE(machine.output_closed);
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_MEMORY_CORRUPTED, machine.unresettable);
@@ -225,17 +217,13 @@ void test_active_while_engaged_with_the_ai_alive(void) {
     to_standby();
     facts.engaged = true;
     facts.ai_alive = false;
-    step(1);
-    expect_state(AGV_STATE_STANDBY);
+    expect_state_after(1, AGV_STATE_STANDBY);
     facts.ai_alive = true;
-    step(1);
-    expect_state(AGV_STATE_ACTIVE);
+    expect_state_after(1, AGV_STATE_ACTIVE);
     facts.ai_alive = false; /* a lost VCU trips by its own fault */
-    step(1);
-    expect_state(AGV_STATE_ACTIVE);
+    expect_state_after(1, AGV_STATE_ACTIVE);
     facts.engaged = false;
-    step(1);
-    expect_state(AGV_STATE_STANDBY);
+    expect_state_after(1, AGV_STATE_STANDBY);
 }
 
 /* Shows: FSM-5 */
@@ -253,8 +241,7 @@ void test_the_first_reason_stays(void) {
 void test_a_cause_that_stands_trips_as_well(void) {
     to_standby();
     facts.cause = AGV_FAULT_MODE_INVALID;
-    step(1);
-    expect_state(AGV_STATE_TRIPPED);
+    expect_state_after(1, AGV_STATE_TRIPPED);
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_MODE_INVALID, machine.first_reason);
 }
 
@@ -264,11 +251,9 @@ void test_a_cause_that_stands_trips_as_well(void) {
 void test_a_cause_of_the_ai_trips_at_the_engagement(void) {
     to_standby();
     facts.ai_cause = AGV_FAULT_AI_COMMAND_OUT_OF_RANGE;
-    run(100);
-    expect_state(AGV_STATE_STANDBY);
+    expect_state_after(100, AGV_STATE_STANDBY);
     facts.engaged = true;
-    step(1);
-    expect_state(AGV_STATE_TRIPPED);
+    expect_state_after(1, AGV_STATE_TRIPPED);
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, machine.first_reason);
     setUp();
     to_standby();
@@ -302,19 +287,15 @@ void test_safe_is_a_confirmed_state(void) {
     to_standby();
     facts.in_park = false;
     trip(AGV_FAULT_BUS_OFF);
-    run(10);
-    expect_state(AGV_STATE_TRIPPED);
+    expect_state_after(10, AGV_STATE_TRIPPED);
     facts.in_park = true;
     facts.autopilot_off = false;
-    step(1);
-    expect_state(AGV_STATE_TRIPPED);
+    expect_state_after(1, AGV_STATE_TRIPPED);
     facts.autopilot_off = true;
-    step(1);
-    expect_state(AGV_STATE_SAFE);
+    expect_state_after(1, AGV_STATE_SAFE);
     TEST_ASSERT_TRUE(machine.output_closed);
     facts.in_park = false;
-    step(1);
-    expect_state(AGV_STATE_TRIPPED);
+    expect_state_after(1, AGV_STATE_TRIPPED);
     TEST_ASSERT_FALSE(has_done(AGV_ACTION_TRIP)); /* it was */
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_BUS_OFF, machine.first_reason);
 }
@@ -335,8 +316,7 @@ void test_an_unsafe_condition_opens_the_output_at_once(void) {
 void test_a_press_that_resets(void) {
     to_safe();
     facts.reset = true;
-    step(1);
-    expect_state(AGV_STATE_STANDBY);
+    expect_state_after(1, AGV_STATE_STANDBY);
     TEST_ASSERT_TRUE(has_done(AGV_ACTION_RESET_ACCEPTED));
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, machine.first_reason);
     TEST_ASSERT_TRUE(machine.output_closed);
@@ -388,8 +368,7 @@ void test_a_cause_of_the_ai_keeps_no_reset(void) {
     facts.ai_alive = false;
     TEST_ASSERT_EQUAL_HEX32(0, lacks());
     facts.reset = true;
-    step(1);
-    expect_state(AGV_STATE_STANDBY);
+    expect_state_after(1, AGV_STATE_STANDBY);
     facts.reset = false;
     run(100); /* and does not trip again at once */
     expect_state(AGV_STATE_STANDBY);
@@ -463,8 +442,7 @@ void test_the_actions_of_a_trip(void) {
     trip(AGV_FAULT_BUS_OFF);
     TEST_ASSERT_EQUAL_HEX32(AGV_ACTION_TRIP | AGV_ACTION_STATE | SENDING | AGV_ACTION_STORE_LATCH, did.what);
     facts.output_unsafe = true;
-    step(1);
-    expect_state(AGV_STATE_SAFE);
+    expect_state_after(1, AGV_STATE_SAFE);
     TEST_ASSERT_EQUAL_HEX32(AGV_ACTION_STATE | AGV_ACTION_OPEN_OUTPUT, did.what);
     step(1);
     TEST_ASSERT_EQUAL_HEX32(0, did.what);
@@ -527,7 +505,6 @@ void test_the_startup_is_late_in_init_only(void) {
     step(1);
     TEST_ASSERT_TRUE(agv_state_machine_is_startup_late(&machine, &timers));
     facts.missing = 0;
-    run(501);
-    expect_state(AGV_STATE_STANDBY);
+    expect_state_after(501, AGV_STATE_STANDBY);
     TEST_ASSERT_FALSE(agv_state_machine_is_startup_late(&machine, &timers));
 }

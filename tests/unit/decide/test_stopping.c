@@ -22,6 +22,11 @@ static void wheels(int32_t left_mm_s, int32_t right_mm_s) {
     agv_vehicle_evaluate(&vehicle, &timers, &config, wheels_fresh, true);
 }
 
+static void wheels_for(uint32_t ms, int32_t left_mm_s, int32_t right_mm_s) {
+    wheels(left_mm_s, right_mm_s);
+    run(ms);
+}
+
 /* A tick that sees the wheels turn: they have turned for 0 ms. */
 static void begin(void) {
     run(1);
@@ -36,12 +41,15 @@ static void expect(bool not_stopping, bool moving) {
     TEST_ASSERT_EQUAL(moving, stopping.moving);
 }
 
+static void expect_faults_after(uint32_t ms, bool not_stopping, bool moving) {
+    run(ms);
+    expect(not_stopping, moving);
+}
+
 /* The first fault must come exactly this many ms from now. */
 static void expect_after(uint32_t ms, bool not_stopping, bool moving) {
-    run(ms - 1);
-    expect(false, false);
-    run(1);
-    expect(not_stopping, moving);
+    expect_faults_after(ms - 1, false, false);
+    expect_faults_after(1, not_stopping, moving);
 }
 
 /* At 2 m/s, just before the wrap. */
@@ -61,27 +69,21 @@ void test_5_s_without_standing_wheels(void) {
     trip();
     expect_after(5000, true, false);
     wheels(0, 0); /* the fault lasts until the wheels have stood for 100 ms */
-    run(99);
-    expect(true, false);
-    run(1);
-    expect(false, false);
+    expect_faults_after(99, true, false);
+    expect_faults_after(1, false, false);
     wheels(2000, 2000); /* they have stood since the trip, so this is the other fault */
-    run(10000);
-    expect(false, true);
+    expect_faults_after(10000, false, true);
 }
 
 /* Slow wheels do not stand yet. A single standstill is enough. */
 /* Shows: FSM-12 */
 void test_wheels_that_stand_within_5_s(void) {
     trip();
-    wheels(60, 0);
-    run(4899);
+    wheels_for(4899, 60, 0);
     wheels(0, 0);
-    run(100);
-    expect(false, false);
+    expect_faults_after(100, false, false);
     wheels(60, 0); /* too fast for standstill, too slow for a moving vehicle */
-    run(10000);
-    expect(false, false);
+    expect_faults_after(10000, false, false);
 }
 
 /* Shows: FSM-12, VEHICLE_NOT_STOPPING */
@@ -94,19 +96,16 @@ void test_stale_wheel_speeds_are_no_standstill(void) {
 
 /* Shows: FSM-12 */
 void test_wheels_that_stand_at_the_trip_count_as_stopped(void) {
-    wheels(0, 0);
-    run(100);
+    wheels_for(100, 0, 0);
     trip();
     wheels_fresh = false;
-    run(10000);
-    expect(false, false);
+    expect_faults_after(10000, false, false);
 }
 
 /* The 200 ms begin with the trip at the earliest. */
 /* Shows: FSM-12, MOVING_WHILE_SAFE */
 void test_wheels_that_turn_from_the_trip_on(void) {
-    wheels(0, 0);
-    run(100);
+    wheels_for(100, 0, 0);
     trip();
     wheels(2000, 2000);
     begin();
@@ -117,11 +116,9 @@ void test_wheels_that_turn_from_the_trip_on(void) {
 /* Shows: FSM-12 */
 void test_wheels_that_are_slow_by_a_setting_stand(void) {
     config.standstill_speed_mm_s = 250;
-    wheels(150, 150);
-    run(100);
+    wheels_for(100, 150, 150);
     trip();
-    run(1000);
-    expect(false, false);
+    expect_faults_after(1000, false, false);
 }
 
 /* The time is a setting. */
@@ -135,8 +132,7 @@ void test_the_time_to_stop_is_a_setting(void) {
 static void trip_and_stop(void) {
     trip();
     wheels(0, 0);
-    run(100);
-    expect(false, false);
+    expect_faults_after(100, false, false);
 }
 
 /* One wheel is enough, in either direction. */
@@ -150,26 +146,20 @@ void test_a_wheel_that_turns_for_200_ms(int left_mm_s, int right_mm_s) {
     begin();
     expect_after(200, false, true);
     wheels(99, 99); /* slower, but they do not stand */
-    run(1000);
-    expect(false, true);
+    expect_faults_after(1000, false, true);
     wheels(0, 0);
-    run(99);
-    expect(false, true);
-    run(1);
-    expect(false, false);
+    expect_faults_after(99, false, true);
+    expect_faults_after(1, false, false);
 }
 
 /* Shows: FSM-12 */
 void test_slow_wheels_and_short_ones_do_not_move_the_vehicle(void) {
     trip_and_stop();
     wheels(99, -99);
-    run(10000);
-    expect(false, false);
+    expect_faults_after(10000, false, false);
     for (unsigned i = 0; i < 20; i++) {
-        wheels(5000, 5000);
-        run(199);
-        wheels(99, 99);
-        run(398);
+        wheels_for(199, 5000, 5000);
+        wheels_for(398, 99, 99);
     }
     expect(false, false);
 }
@@ -178,10 +168,8 @@ void test_slow_wheels_and_short_ones_do_not_move_the_vehicle(void) {
 /* Shows: FSM-12, MOVING_WHILE_SAFE */
 void test_a_slow_reading_now_and_then_hides_no_motion(void) {
     trip_and_stop();
-    wheels(5000, 5000);
-    run(180);
-    wheels(0, 0);
-    run(10);
+    wheels_for(180, 5000, 5000);
+    wheels_for(10, 0, 0);
     wheels(5000, 5000);
     begin();
     expect_after(25, false, true);
@@ -192,8 +180,7 @@ void test_a_slow_reading_now_and_then_hides_no_motion(void) {
 void test_motion_counts_from_the_first_stop_on(void) {
     trip();
     run(1000);
-    wheels(0, 0);
-    run(100);
+    wheels_for(100, 0, 0);
     wheels(2000, 2000);
     begin();
     expect_after(200, false, true);
@@ -205,11 +192,9 @@ void test_wheels_that_seem_to_stand_now_and_then_hide_no_motion(void) {
     trip_and_stop();
     for (unsigned i = 0; i < 2; i++) {
         wheels(5000, 5000);
-        run(190);
-        expect(false, i == 1);
+        expect_faults_after(190, false, i == 1);
         wheels(0, 0);
-        run(110);
-        expect(false, false);
+        expect_faults_after(110, false, false);
     }
 }
 
@@ -231,11 +216,9 @@ void test_speeds_that_drop_out_hide_no_motion(void) {
 /* Shows: FSM-12 */
 void test_stale_wheel_speeds_are_not_moving(void) {
     trip_and_stop();
-    wheels(5000, 5000);
-    run(150);
+    wheels_for(150, 5000, 5000);
     wheels_fresh = false;
-    run(1000);
-    expect(false, false);
+    expect_faults_after(1000, false, false);
     wheels_fresh = true;
     begin();
     expect_after(200, false, true);
@@ -245,8 +228,7 @@ void test_stale_wheel_speeds_are_not_moving(void) {
 /* Shows: FSM-12 */
 void test_wheels_that_have_not_stood_yet_are_not_moving_while_safe(void) {
     trip();
-    run(4000);
-    expect(false, false);
+    expect_faults_after(4000, false, false);
 }
 
 /* Late steps count with all their time. */
@@ -267,8 +249,7 @@ void test_late_steps(void) {
 /* Shows: FSM-12 */
 void test_another_trip_begins_anew(void) {
     trip();
-    run(5000);
-    expect(true, false);
+    expect_faults_after(5000, true, false);
     trip();
     expect(false, false);
 }

@@ -65,6 +65,11 @@ static void expect_heartbeat(agv_node_t node, agv_heartbeat_state_t expected) {
     TEST_ASSERT_EQUAL(expected == AGV_HEARTBEAT_ALIVE, agv_liveness_alive(&liveness, node));
 }
 
+static void expect_heartbeat_at(uint32_t now_ms, agv_node_t node, agv_heartbeat_state_t expected) {
+    tick(now_ms);
+    expect_heartbeat(node, expected);
+}
+
 /* A frame of the message with the alive counter: 363h, 067h, 43Fh. This value is in one byte, 0 in the others. */
 static void receive(agv_node_t node, unsigned byte, uint8_t value, uint32_t time_ms) {
     static const agv_message_t carrier[] = {AGV_MSG_VEHICLE_STATUS, AGV_MSG_STEERING_STATUS,
@@ -184,10 +189,8 @@ void test_a_stamp_that_goes_backwards_is_no_gap(void) {
 TEST_CASE(0)
 TEST_CASE(1)
 void test_vcu_and_eps_are_awaited_from_the_start(unsigned node) {
-    tick(50);
-    expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_UNSEEN);
-    tick(51);
-    expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_LOST);
+    expect_heartbeat_at(50, (agv_node_t)node, AGV_HEARTBEAT_UNSEEN);
+    expect_heartbeat_at(51, (agv_node_t)node, AGV_HEARTBEAT_LOST);
 }
 
 /* The first frame has no previous counter, so a late sender is lost, not stuck. */
@@ -196,20 +199,16 @@ TEST_CASE(0)
 TEST_CASE(1)
 void test_a_first_frame_just_before_the_deadline_is_no_repeat(unsigned node) {
     beat((agv_node_t)node, 200, 45);
-    tick(51);
-    expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_LOST);
+    expect_heartbeat_at(51, (agv_node_t)node, AGV_HEARTBEAT_LOST);
 }
 
 /* Shows: SUP-8 */
 void test_the_ai_is_not_awaited_before_it_was_seen(void) {
-    tick(1000000);
-    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
+    expect_heartbeat_at(1000000, AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
     beat(AGV_NODE_AI, 9, 1000000);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_BASELINE);
-    tick(1000350);
-    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_BASELINE);
-    tick(1000351);
-    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_LOST);
+    expect_heartbeat_at(1000350, AGV_NODE_AI, AGV_HEARTBEAT_BASELINE);
+    expect_heartbeat_at(1000351, AGV_NODE_AI, AGV_HEARTBEAT_LOST);
 }
 
 /* Shows: SUP-1 */
@@ -244,8 +243,7 @@ void test_any_change_of_the_counter_is_a_heartbeat(void) {
     beat(AGV_NODE_VCU, 254, 0);
     for (uint32_t i = 0; i < sizeof counters; i++) {
         beat(AGV_NODE_VCU, counters[i], 40 * (i + 1));
-        tick(40 * (i + 1) + 50);
-        expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
+        expect_heartbeat_at(40 * (i + 1) + 50, AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
     }
 }
 
@@ -256,8 +254,7 @@ static void repeat_until(uint32_t last_frame_ms) {
     for (uint32_t ms = 110; ms <= last_frame_ms; ms += 10) {
         beat(AGV_NODE_VCU, 2, ms);
     }
-    tick(150);
-    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
+    expect_heartbeat_at(150, AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
     tick(151);
 }
 
@@ -282,10 +279,8 @@ void test_stuck_needs_a_repeat_within_the_last_two_cycles(unsigned node, uint32_
         beat((agv_node_t)node, 1, 50);
         beat((agv_node_t)node, 2, 100);
         beat((agv_node_t)node, 2, repeat_ms - more_ms);
-        tick(expired_ms - 1);
-        expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_ALIVE);
-        tick(expired_ms);
-        expect_heartbeat((agv_node_t)node, (more_ms == 0) ? AGV_HEARTBEAT_STUCK : AGV_HEARTBEAT_LOST);
+        expect_heartbeat_at(expired_ms - 1, (agv_node_t)node, AGV_HEARTBEAT_ALIVE);
+        expect_heartbeat_at(expired_ms, (agv_node_t)node, (more_ms == 0) ? AGV_HEARTBEAT_STUCK : AGV_HEARTBEAT_LOST);
     }
 }
 
@@ -309,8 +304,7 @@ void test_a_forgotten_ai_is_seen_again_when_its_counter_changes(void) {
     agv_liveness_forget_ai(&liveness);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_FORGOTTEN);
     beat(AGV_NODE_AI, 2, 200);
-    tick(10000);
-    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_FORGOTTEN);
+    expect_heartbeat_at(10000, AGV_NODE_AI, AGV_HEARTBEAT_FORGOTTEN);
     beat(AGV_NODE_AI, 3, 10000);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_ALIVE);
 }
@@ -324,8 +318,7 @@ void test_a_forgotten_ai_is_lost_when_engaged(uint32_t engaged_ms, uint32_t lost
     beat(AGV_NODE_AI, 2, 100);
     tick(150);
     agv_liveness_forget_ai(&liveness);
-    tick(engaged_ms);
-    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_FORGOTTEN);
+    expect_heartbeat_at(engaged_ms, AGV_NODE_AI, AGV_HEARTBEAT_FORGOTTEN);
     tick_while(true, engaged_ms);
     expect_heartbeat(AGV_NODE_AI, (lost_ms == engaged_ms) ? AGV_HEARTBEAT_LOST : AGV_HEARTBEAT_FORGOTTEN);
     tick_while(true, lost_ms);
@@ -337,8 +330,7 @@ void test_a_forgotten_ai_is_lost_when_engaged(uint32_t engaged_ms, uint32_t lost
 void test_a_forgotten_ai_whose_counter_stands_is_stuck_when_engaged(void) {
     beat(AGV_NODE_AI, 1, 0);
     beat(AGV_NODE_AI, 2, 100);
-    tick(1000);
-    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_LOST);
+    expect_heartbeat_at(1000, AGV_NODE_AI, AGV_HEARTBEAT_LOST);
     agv_liveness_forget_ai(&liveness);
     beat(AGV_NODE_AI, 2, 1100);
     tick_while(true, 1101);
@@ -397,17 +389,13 @@ void test_after_a_wrong_step_two_right_ones_in_a_row_refresh(void) {
     beat(AGV_NODE_VCU, 201, 40); /* right, the first one */
     beat(AGV_NODE_VCU, 201, 50); /* wrong */
     beat(AGV_NODE_VCU, 202, 60);
-    tick(70);
-    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
-    tick(71);
-    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_STUCK);
+    expect_heartbeat_at(70, AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
+    expect_heartbeat_at(71, AGV_NODE_VCU, AGV_HEARTBEAT_STUCK);
     beat(AGV_NODE_VCU, 205, 72); /* the second one */
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
     beat(AGV_NODE_VCU, 206, 80); /* from here on each */
-    tick(130);
-    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
-    tick(131);
-    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
+    expect_heartbeat_at(130, AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
+    expect_heartbeat_at(131, AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
 }
 
 /* Two senders with counters of their own never look alive. */

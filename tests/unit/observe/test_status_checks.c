@@ -39,6 +39,11 @@ static void eps(unsigned mode, unsigned bits) {
     agv_status_checks_eps(&checks, &faults, &config, data, mode <= 3 || mode == 0xFF, judged);
 }
 
+static void expect_only_after_eps(unsigned mode, unsigned bits, unsigned fault) {
+    eps(mode, bits);
+    expect_only(fault);
+}
+
 static void eps_frames(unsigned count, unsigned mode, unsigned bits) {
     for (unsigned i = 0; i < count; i++) {
         eps(mode, bits);
@@ -49,6 +54,11 @@ static void eps_frames(unsigned count, unsigned mode, unsigned bits) {
 static void vcu(unsigned alarms, unsigned level_2) {
     const uint8_t data[8] = {0xFF, 0xFF, 0xFF, 0xFF, (uint8_t)alarms, (uint8_t)level_2, 0xFF, 0xFF};
     agv_status_checks_vehicle(&checks, &faults, data, ai_alive);
+}
+
+static void expect_only_after_vcu(unsigned alarms, unsigned level_2, unsigned fault) {
+    vcu(alarms, level_2);
+    expect_only(fault);
 }
 
 static void value(unsigned message, bool valid) {
@@ -66,16 +76,12 @@ void test_bits_of_the_supply_are_scored_and_the_others_count_at_once(void) {
                                          AGV_FAULT_EPS_MOTOR_ENCODER,     AGV_FAULT_EPS_POSITION_ENCODER};
     for (unsigned bit = 0; bit < 8; bit++) {
         setUp();
-        eps(1, 1u << bit);
-        expect_only(bit < 3 ? (unsigned)NONE : fault_of[bit]);
-        eps(1, 1u << bit);
-        expect_only(bit < 3 ? (unsigned)NONE : fault_of[bit]);
-        eps(1, 1u << bit);
-        expect_only(fault_of[bit]);
+        expect_only_after_eps(1, 1u << bit, bit < 3 ? (unsigned)NONE : fault_of[bit]);
+        expect_only_after_eps(1, 1u << bit, bit < 3 ? (unsigned)NONE : fault_of[bit]);
+        expect_only_after_eps(1, 1u << bit, fault_of[bit]);
         eps_frames(5, 1, 0);
         expect_only(bit < 3 ? fault_of[bit] : (unsigned)NONE);
-        eps(1, 0);
-        expect_only(NONE);
+        expect_only_after_eps(1, 0, NONE);
     }
 }
 
@@ -83,11 +89,9 @@ void test_bits_of_the_supply_are_scored_and_the_others_count_at_once(void) {
 /* Shows: SUP-4 */
 void test_every_second_frame_bad_is_a_fault(void) {
     for (unsigned i = 0; i < 8; i++) {
-        eps(1, (i % 2 == 0) ? 2 : 0);
-        expect_only(NONE);
+        expect_only_after_eps(1, (i % 2 == 0) ? 2 : 0, NONE);
     }
-    eps(1, 2);
-    expect_only(AGV_FAULT_EPS_OVER_VOLTAGE);
+    expect_only_after_eps(1, 2, AGV_FAULT_EPS_OVER_VOLTAGE);
 }
 
 /* The bits of a frame have separate scores. */
@@ -97,18 +101,15 @@ void test_two_bits_are_not_added_up(void) {
         eps(1, 1);
         eps(1, 0);
         eps(1, 2);
-        eps(1, 0);
-        expect_only(NONE);
+        expect_only_after_eps(1, 0, NONE);
     }
 }
 
 /* Shows: SUP-4 */
 void test_the_number_of_supply_frames_is_a_setting(void) {
     config.eps_supply_fault_frames = 1;
-    eps(1, 2);
-    expect_only(AGV_FAULT_EPS_OVER_VOLTAGE);
-    eps(1, 0);
-    expect_only(NONE);
+    expect_only_after_eps(1, 2, AGV_FAULT_EPS_OVER_VOLTAGE);
+    expect_only_after_eps(1, 0, NONE);
 }
 
 /* The bits count always, judged or not. */
@@ -134,12 +135,10 @@ TEST_CASE(3, AGV_FAULT_EPS_MODE_NOT_ANGLE)
 void test_a_mode_that_is_not_angle_control_counts_five_frames(unsigned mode, unsigned fault) {
     eps_frames(4, mode, 0);
     expect_only(NONE);
-    eps(mode, 0);
-    expect_only(fault);
+    expect_only_after_eps(mode, 0, fault);
     eps_frames(9, 1, 0);
     expect_only(fault); /* keeps its name */
-    eps(1, 0);
-    expect_only(NONE);
+    expect_only_after_eps(1, 0, NONE);
 }
 
 /* All wrong modes add to one score. */
@@ -149,14 +148,10 @@ void test_the_mode_is_named_after_the_last_bad_frame(void) {
     eps(2, 0);
     eps(0xFF, 0);
     eps(7, 0);
-    eps(3, 0);
-    expect_only(AGV_FAULT_EPS_MODE_NOT_ANGLE);
-    eps(0xFF, 0);
-    expect_only(AGV_FAULT_EPS_MODE_OFF);
-    eps(1, 0);
-    expect_only(AGV_FAULT_EPS_MODE_OFF);
-    eps(0x80, 0);
-    expect_only(AGV_FAULT_EPS_MODE_INVALID);
+    expect_only_after_eps(3, 0, AGV_FAULT_EPS_MODE_NOT_ANGLE);
+    expect_only_after_eps(0xFF, 0, AGV_FAULT_EPS_MODE_OFF);
+    expect_only_after_eps(1, 0, AGV_FAULT_EPS_MODE_OFF);
+    expect_only_after_eps(0x80, 0, AGV_FAULT_EPS_MODE_INVALID);
 }
 
 /* The score is paused, and the fault ends when it is not judged any more. */
@@ -169,8 +164,7 @@ void test_while_not_judged_no_mode_counts(void) {
     expect_only(NONE);
     judged = true;
     expect_only(NONE);
-    eps(0xFF, 0);
-    expect_only(AGV_FAULT_EPS_MODE_OFF);
+    expect_only_after_eps(0xFF, 0, AGV_FAULT_EPS_MODE_OFF);
     judged = false;
     expect_only(NONE);
     judged = true;
@@ -187,37 +181,30 @@ void test_an_alarm_counts_at_once(void) {
         AGV_FAULT_VCU_EPS_HARDWARE_FAULT, AGV_FAULT_VCU_EPS_CAN_BUS_FAULT, NONE, AGV_FAULT_S_DRIVER_ALARM};
     for (unsigned bit = 0; bit < 8; bit++) {
         setUp();
-        vcu(1u << bit, 0);
-        expect_only(fault_of[bit]);
-        vcu(0, 0);
-        expect_only(NONE);
+        expect_only_after_vcu(1u << bit, 0, fault_of[bit]);
+        expect_only_after_vcu(0, 0, NONE);
     }
 }
 
 /* Shows: SUP-4, VCU_LEVEL2_ALARM */
 void test_any_level_2_alarm(void) {
     for (unsigned bit = 0; bit < 8; bit++) {
-        vcu(0, 1u << bit);
-        expect_only(AGV_FAULT_VCU_LEVEL2_ALARM);
+        expect_only_after_vcu(0, 1u << bit, AGV_FAULT_VCU_LEVEL2_ALARM);
     }
-    vcu(0, 0);
-    expect_only(NONE);
+    expect_only_after_vcu(0, 0, NONE);
 }
 
 /* Once armed the alarm stays armed: a reset forgets only that the AI was alive. */
 /* Shows: SUP-8, FSM-11, VCU_AI_CAN_LOST */
 void test_the_alarm_of_the_ai_computer_counts_once_it_was_clear_with_the_ai_alive(void) {
-    vcu(0x08, 0);
-    expect_only(NONE); /* never clear */
+    expect_only_after_vcu(0x08, 0, NONE); /* never clear */
     ai_alive = false;
     vcu(0, 0);
-    vcu(0x08, 0);
-    expect_only(NONE); /* clear without the AI */
+    expect_only_after_vcu(0x08, 0, NONE); /* clear without the AI */
     ai_alive = true;
     vcu(0x04, 0); /* another bit leaves it clear */
     ai_alive = false;
-    vcu(0x08, 0);
-    expect_only(AGV_FAULT_VCU_AI_CAN_LOST);
+    expect_only_after_vcu(0x08, 0, AGV_FAULT_VCU_AI_CAN_LOST);
     engaged = false;
     expect_only(NONE);
     engaged = true;
@@ -225,8 +212,7 @@ void test_the_alarm_of_the_ai_computer_counts_once_it_was_clear_with_the_ai_aliv
     expect_only(AGV_FAULT_VCU_AI_CAN_LOST);
     agv_status_checks_engage(&checks);
     expect_only(AGV_FAULT_VCU_AI_CAN_LOST);
-    vcu(0, 0);
-    expect_only(NONE);
+    expect_only_after_vcu(0, 0, NONE);
 }
 
 /* ---- Values ---- */
