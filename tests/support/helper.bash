@@ -1,4 +1,4 @@
-# shellcheck shell=bash disable=SC2154 # `run` sets status and output
+# shellcheck shell=bash disable=SC2154,SC2034 # `run` sets status and output; ROOT is for the tests
 # Common parts of tests of gates. Each test runs a gate on a seeded fault, and first on the same input without it.
 ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 : "${BATS_TEST_TMPDIR:=$(mktemp -d)}" # bats before 1.4 has none
