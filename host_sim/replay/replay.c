@@ -103,6 +103,9 @@ static void pass_on_record(replay_t *replay, candump_record_t *record, uint64_t 
     record->frame.time_us = (uint16_t)(t_us % US_PER_MS);
     sim_hal_set_now_ms(&replay->hal, record->frame.time_ms);
     replay_heard_add(&replay->heard, record, t_us);
+    if (side == HAL_CAN_VEHICLE) {
+        replay_heard_recorded(&replay->heard.recorded, &record->frame, t_us);
+    }
     analysis_frame(replay->analysis, side, &record->frame, t_us);
     if (replay->request->timeline) {
         timeline_received(&replay->timeline, side, &record->frame, t_us);
@@ -131,6 +134,12 @@ static bool pass_record(replay_t *replay, candump_record_t *record) {
     return outputs_work(replay);
 }
 
+/** Whether the replay ends before this record. */
+static bool is_beyond(const replay_t *replay, const candump_record_t *record) {
+    const uint64_t until_us = replay->request->until_ms * US_PER_MS;
+    return (until_us > 0) && (record->stamp_us >= replay->first_us + until_us);
+}
+
 /** Pass all lines, the first of which was read already, and the tail. @return false: not all of them. */
 static bool pass_log(replay_t *replay, candump_record_t *record) {
     candump_result_t result = CANDUMP_RECORD;
@@ -139,6 +148,7 @@ static bool pass_log(replay_t *replay, candump_record_t *record) {
             return false;
         }
         result = candump_next(&replay->log, record);
+        result = ((result == CANDUMP_RECORD) && is_beyond(replay, record)) ? CANDUMP_END : result;
     }
     return (result == CANDUMP_END) && run_ticks(replay, replay->last_us + (replay->request->tail_ms * US_PER_MS) + 1);
 }
@@ -150,6 +160,10 @@ static void start(replay_t *replay, uint64_t first_us) {
                                      .watchdog_ms = request->config.watchdog_period_ms,
                                      .reset_cause = request->reset_cause,
                                      .store = &replay->store};
+    agv_ids_t ids;
+    agv_config_ids(&request->config, &ids);
+    replay->heard.recorded.lights_id = ids.of[AGV_MSG_TURN_SIGNAL_COMMAND];
+    replay->heard.recorded.status_id = request->config.status_frame_id;
     replay->first_us = first_us;
     replay->last_us = first_us;
     replay->now_us = first_us;

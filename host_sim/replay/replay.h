@@ -38,6 +38,7 @@ typedef struct {
     bool fail_on_trip;        /**< STATUS_UNMET if it tripped, or if nothing was supervised */
     const char *ai_interface; /**< gateway: the AI side; NULL on the shared bus */
     uint32_t start_ms;        /**< what the supervisor's clock reads at the start */
+    uint64_t until_ms;        /**< lines from this time on are left out; 0: none */
     uint64_t tail_ms;         /**< how long to go on after the last line */
     bool skip_bad_lines;
     hal_reset_cause_t reset_cause;

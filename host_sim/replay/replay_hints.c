@@ -1,13 +1,17 @@
 #include "replay/replay_hints.h"
 
+#include <inttypes.h>
 #include <string.h>
 
+#include "agv/names.h"
 #include "agv/recorder.h"
 #include "common/message_facts.h"
 #include "text/units.h"
+#include "why/why_table.h"
 #include "why/why_words.h"
 
-enum { SHOWN_IDS = 6, PAUSE_US = US_PER_S };
+/* BURST_US: so long before the first 43Fh of a trip its other safe commands may come. */
+enum { SHOWN_IDS = 6, PAUSE_US = US_PER_S, BURST_US = 5 * US_PER_MS };
 
 static bool is_heard(const replay_heard_t *heard, uint32_t id) {
     return (id <= AGV_ID_MAX) && (heard->ids[id] != 0);
@@ -295,6 +299,41 @@ static bool hint_pause(text_t *text, const replay_clues_t *clues) {
     return true;
 }
 
+/** Whether a command stayed away, or its counter stood still. A safe command hides that. */
+static bool is_about_a_command(agv_fault_t reason) {
+    const why_row_t *row = why_row(reason);
+    return ((row->kind == WHY_SILENCE) || (row->kind == WHY_STUCK)) && (row->message < AGV_COMMAND_COUNT);
+}
+
+/** Add how to replay a log up to a trip that was recorded. */
+static void add_until(text_t *text, const replay_recorded_t *recorded) {
+    if (!is_about_a_command(recorded->reason)) {
+        text_add(text, "--until %" PRIu64 "ms", (recorded->trip_us / US_PER_MS) + 1);
+    } else if (recorded->commands_us > BURST_US) {
+        text_add(text, "--until %" PRIu64 "ms --tail 200ms", (recorded->commands_us - BURST_US) / US_PER_MS);
+    } else {
+        text_add(text, "a log that begins earlier");
+    }
+}
+
+/** A supervisor was on the recorded bus: its commands replace those that did not come, so they hide why it tripped. */
+static bool hint_supervisor(text_t *text, const replay_clues_t *clues) {
+    const replay_recorded_t *recorded = &clues->heard->recorded;
+    const char *reason = agv_fault_name(recorded->reason);
+    if (recorded->state == 0) {
+        return false;
+    }
+    text_add(text, "%03Xh received: a supervisor was active, and its commands are in this log",
+             (unsigned)clues->config->status_frame_id);
+    if ((recorded->trip_us > 0) && (reason != NULL)) {
+        text_add(text, ". It tripped by %s, reported at ", reason);
+        why_words_time(text, recorded->trip_us);
+        text_add(text, ". To see the cause: ");
+        add_until(text, recorded);
+    }
+    return true;
+}
+
 bool replay_hint(text_t *text, replay_hint_t hint, const replay_clues_t *clues) {
     static bool (*const hints[REPLAY_HINTS])(text_t *, const replay_clues_t *) = {
         [REPLAY_HINT_ID_SET] = hint_id_set,
@@ -305,6 +344,7 @@ bool replay_hint(text_t *text, replay_hint_t hint, const replay_clues_t *clues) 
         [REPLAY_HINT_SIDES] = hint_sides,
         [REPLAY_HINT_INTERFACES] = hint_interfaces,
         [REPLAY_HINT_PAUSE] = hint_pause,
+        [REPLAY_HINT_SUPERVISOR] = hint_supervisor,
     };
     return hints[hint](text, clues);
 }

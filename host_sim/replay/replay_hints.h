@@ -20,6 +20,7 @@ typedef enum {
     REPLAY_HINT_SIDES,
     REPLAY_HINT_INTERFACES,
     REPLAY_HINT_PAUSE,
+    REPLAY_HINT_SUPERVISOR,
     REPLAY_HINTS
 } replay_hint_t;
 

@@ -33,6 +33,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_FLAG("--fail-on-trip",
                     "exit status 1 if it tripped, nothing was supervised, or time stamps go back by 10 ms or more",
                     &given->request.fail_on_trip),
+        OPTION_DURATION("--until", "leave out the lines from this time on, counted from the first one",
+                        &given->request.until_ms, 1, REPLAY_TAIL_MAX_MS),
         OPTION_DURATION("--tail", "continue for this time after the last line (0)", &given->request.tail_ms, 0,
                         REPLAY_TAIL_MAX_MS),
         OPTION_DURATION("--start-ms", "the supervisor's clock at the start, in ms (0)", &given->start_ms, 0,

@@ -31,6 +31,47 @@ class Case(hostsim.Case):
         return json.loads(self.read("why.json"))
 
 
+class ASupervisorWasActive(Case):
+    """Its commands are in the log: they hide that those of the AI computer stayed away."""
+
+    def recorded(self, edit):
+        """A log, and the same with what a supervisor sent."""
+        log = traffic.log(traffic.frames(3000, engage_ms=1000, edit=edit))
+        self.write("plain.log", log)
+        self.run_good("replay", "--out", "out.log", "plain.log")
+        lines = log.splitlines(keepends=True) + self.read("out.log").splitlines(keepends=True)
+        return log, "".join(sorted(lines, key=lambda line: line.split()[0]))
+
+    def trip(self, lines):
+        return next(line for line in lines if line.startswith("tripped"))
+
+    def test_a_command_stayed_away(self):
+        plain, log = self.recorded(stop(("steering_command",), 2000))
+        self.assertEqual(self.trip(self.text(plain)), "tripped     at 2.107 s (22:13:22.107): STEERING_COMMAND_TIMEOUT")
+        lines = self.text(log)
+        self.assertTrue(self.trip(lines).startswith("tripped     never"))
+        self.assertEqual(lines[:3], [
+            "hint        7F0h received: a supervisor was active, and its commands are in this log. It tripped by",
+            "            STEERING_COMMAND_TIMEOUT, reported at 2.200 s. To see the cause: --until 2102ms --tail",
+            "            200ms"])
+        self.assertEqual(self.trip(self.text(log, "--until", "2102ms", "--tail", "200ms")), self.trip(self.text(plain)))
+
+    def test_the_vehicle_reported_a_fault(self):
+        _, log = self.recorded(edit_payload("vehicle_status", 2030, raise_remote_signal_lost, 2060))
+        lines = self.text(log)
+        self.assertEqual(lines[:2], [
+            "hint        7F0h received: a supervisor was active, and its commands are in this log. It tripped by",
+            "            REMOTE_SIGNAL_LOST, reported at 2.100 s. To see the cause: --until 2101ms"])
+        lines = self.text(log, "--until", "2101ms")
+        self.assertEqual(self.trip(lines), "tripped     at 2.030 s (22:13:22.030): REMOTE_SIGNAL_LOST")
+        self.assertIn("my.log: 2.100 s on can0, 2023-11-14 22:13:20.000 to 22:13:22.100", lines)
+
+    def test_it_did_not_trip(self):
+        _, log = self.recorded(None)
+        self.assertEqual(self.text(log)[0], "hint        7F0h received: a supervisor was active, and its commands are in this log")
+        self.assertNotIn("hint", " ".join(self.text(log, "--config", self.write("off.yaml", "status_frame_id: 0\n"))))
+
+
 class FiveLogs(Case):
     """Logs of which nothing, or not all, was supervised: they must not look like a pass."""
 
