@@ -13,7 +13,7 @@ yet" needs neither.
 
 Prints row -> tests. Fails on a row without a test, a level of evidence that no test has, a tag that names no row or stands
 above no test, a scenario without a tag, a C test that its folder's CMakeLists.txt does not build, and a proof without a tag.
-The pages: docs/requirements.md (the tests of each row) and docs/evidence.md (evidence.py).
+The pages: docs/traceability.md (the tests of each row) and docs/evidence.md (evidence.py).
 """
 import argparse
 import pathlib
@@ -47,7 +47,7 @@ def numbered(path, family, problems):
     if not path.exists():
         problems.append(f"{path} is missing")
         return []
-    text = path.read_text(encoding="utf-8").split(BEGIN)[0]  # not the section that is made here
+    text = path.read_text(encoding="utf-8")
     found = re.findall(rf"^\|\s*\**{family}{separator}(\d+)\**\s*\|", text, re.MULTILINE)
     numbers = [int(number) for number in found]
     if (not numbers and family != "HW") or numbers != list(range(1, len(numbers) + 1)):
@@ -65,7 +65,7 @@ def read_rows(root, problems):
 
 def not_built(root):
     """Requirements and faults that their page says are not built yet."""
-    text = (root / "docs/requirements.md").read_text(encoding="utf-8").split(BEGIN)[0]
+    text = (root / "docs/requirements.md").read_text(encoding="utf-8")
     if (root / "docs/faults.md").exists():
         text += (root / "docs/faults.md").read_text(encoding="utf-8")
     rows = [line for line in text.splitlines() if line.startswith("|") and NOT_BUILT in line]
@@ -145,7 +145,7 @@ def trace_code(root, rows):
 
 def levels(root, problems):
     """The level of evidence of each requirement, as docs/requirements.md states it."""
-    text = (root / "docs/requirements.md").read_text(encoding="utf-8").split(BEGIN)[0]
+    text = (root / "docs/requirements.md").read_text(encoding="utf-8")
     found = dict(re.findall(r"^\| ((?:%s)-\d+) \|.*\| ([^|]*) \|$" % "|".join(FAMILIES), text, re.MULTILINE))
     for row, level in found.items():
         if not level.startswith(("host", "vcan", "native_sim", "emulated target", "open")):
@@ -224,7 +224,7 @@ def bring_up_to_date(document, begin, section, write, problems):
 def main():
     parser = argparse.ArgumentParser(description="row -> tests")
     parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2])
-    parser.add_argument("--markdown", action="store_true", help="rewrite the sections in requirements.md and evidence.md")
+    parser.add_argument("--markdown", action="store_true", help="rewrite the sections in traceability.md and evidence.md")
     parser.add_argument("--check", action="store_true", help="fail when they are not up to date")
     arguments = parser.parse_args()
 
@@ -236,7 +236,7 @@ def main():
     docs = arguments.root / "docs"
     if (arguments.markdown or arguments.check) and (docs / "requirements.md").exists():
         section = markdown(shown, not_built(arguments.root))
-        bring_up_to_date(docs / "requirements.md", BEGIN, section, arguments.markdown, problems)
+        bring_up_to_date(docs / "traceability.md", BEGIN, section, arguments.markdown, problems)
         page = docs / "evidence.md"
         section = evidence.claims(arguments.root, CLAIMS, END, problems)
         bring_up_to_date(page, CLAIMS, section, arguments.markdown, problems)
