@@ -46,6 +46,8 @@ CHIPS = {
     "s32k3": ("low-voltage reset, always on", "flash and RAM: ECC, not used"),
 }
 
+ERASE_MAX_MS = 40  # two sectors, one after the other, within the watchdog's period
+
 KCONFIG_FILES = ("firmware/zephyr/Kconfig", "firmware/zephyr/Kconfig.settings", "firmware/zephyr/Kconfig.watchdog", "hal/zephyr/Kconfig")
 NUMBERS = {"int": "decimal number", "hex": "hexadecimal number (0x...)"}
 
@@ -209,6 +211,9 @@ def check_pins(build):
     seen = {}
     for name, entry in pins_of(build):
         require_enabled(name, entry.controller)
+        if entry.controller.bus_node is not None:
+            raise Refused(f"devicetree: {name} is a pin of <{label(entry.controller)}>, which is behind a bus: use a pin of the "
+                          "processor, which can be set in an interrupt")
         pin = (entry.controller.path, entry.data.get("pin"))
         if pin in seen:
             raise Refused(f"devicetree: {seen[pin]} and {name} are the same pin, {pin_text(entry)}")
@@ -230,6 +235,11 @@ def check_log(build):
     if log is not None and (log.val.parent is None or "fixed-partitions" not in log.val.parent.compats):
         raise Refused(f"devicetree: log-partition = <{label(log.val)}> is no partition: name a child of a node with compatible = "
                       '"fixed-partitions"')
+    flash = log.val.parent.parent if log is not None else None
+    erase = flash.props.get("max-erase-time") if flash is not None else None
+    if erase is not None and erase.val > ERASE_MAX_MS:
+        raise Refused(f"devicetree: a sector of <{label(flash)}> takes up to {erase.val} ms to erase, and the watchdog waits for two of "
+                      f"at most {ERASE_MAX_MS} ms: leave log-partition out")
 
 
 def retained_memory(build):

@@ -19,6 +19,17 @@ BUILD_ASSERT(CONFIG_MAIN_THREAD_PRIORITY < 0,
 #if !defined(CONFIG_ZTEST)
 BUILD_ASSERT(CONFIG_SYSTEM_WORKQUEUE_PRIORITY >= 0,
              "CONFIG_SYSTEM_WORKQUEUE_PRIORITY must be 0 or more: the work queue must not delay the supervisor");
+BUILD_ASSERT(!IS_ENABLED(CONFIG_PM),
+             "CONFIG_PM must be off: the supervisor runs every millisecond, on a bus that wakes nobody");
+#if defined(CONFIG_LOG_PROCESS_THREAD_CUSTOM_PRIORITY)
+BUILD_ASSERT(CONFIG_LOG_PROCESS_THREAD_PRIORITY >= 0,
+             "CONFIG_LOG_PROCESS_THREAD_PRIORITY must be 0 or more: printing must not delay the supervisor");
+#endif
+#if defined(CONFIG_MCUMGR_TRANSPORT_WORKQUEUE_THREAD_PRIO)
+BUILD_ASSERT(
+    CONFIG_MCUMGR_TRANSPORT_WORKQUEUE_THREAD_PRIO >= 0,
+    "CONFIG_MCUMGR_TRANSPORT_WORKQUEUE_THREAD_PRIO must be 0 or more: an update must not delay the supervisor");
+#endif
 BUILD_ASSERT(IS_ENABLED(CONFIG_ARCH_POSIX) ||
                  !(IS_ENABLED(CONFIG_LOG_MODE_IMMEDIATE) || IS_ENABLED(CONFIG_LOG_MODE_MINIMAL) ||
                    IS_ENABLED(CONFIG_LOG_BLOCK_IN_THREAD) || IS_ENABLED(CONFIG_DEBUG_COREDUMP)),

@@ -77,7 +77,11 @@ bool linux_hal_queue_take(linux_hal_side_t *side, const hal_can_frame_t *frame, 
     const uint64_t since_us = drop_older(side, frame, now_us);
     const linux_hal_waiting_t waiting = {.frame = *frame, .taken_us = now_us, .since_us = since_us};
     if (!side->in_flight && side->waiting_count == 0) {
-        return write_now(side, &waiting, now_us) == LINUX_CAN_TAKEN;
+        const bool is_taken = write_now(side, &waiting, now_us) == LINUX_CAN_TAKEN;
+        if (is_taken || since_us == now_us) {
+            return is_taken;
+        }
+        /* it replaced a frame that was accepted: it waits in its place */
     }
     if (side->waiting_count == LINUX_HAL_QUEUE_SIZE) {
         return false;

@@ -162,10 +162,10 @@ bool zephyr_can_start(zephyr_hal_side_t *side, const zephyr_hal_config_t *config
         side->state = HAL_CAN_BUS_OFF;
         return false;
     }
-    side->listen_only = config->listen_only;
+    side->listen_only = config->listen_only || IS_ENABLED(CONFIG_AGV_CAN_LISTEN_ONLY);
     can_set_state_change_callback(side->device, on_state, side);
-    const bool works = set_mode(side->device, config->listen_only) && set_timing(side->device, config) &&
-                       listen(side) && (can_start(side->device) == 0);
+    const bool works = set_mode(side->device, side->listen_only) && set_timing(side->device, config) && listen(side) &&
+                       (can_start(side->device) == 0);
     look(side);
     return works;
 }
@@ -357,7 +357,7 @@ static void recover(zephyr_hal_side_t *side) {
 
 void hal_can_recover(hal_t *hal, hal_can_side_t side) {
     zephyr_hal_side_t *const off = zephyr_hal_side(hal, side);
-    if ((off != NULL) && (off->state == HAL_CAN_BUS_OFF)) {
+    if ((off != NULL) && off->running && (off->state == HAL_CAN_BUS_OFF)) {
         recover(off);
     }
 }

@@ -99,7 +99,8 @@ SYS_INIT_NAMED(handle_nmi_at_boot, handle_nmi, PRE_KERNEL_1, 0);
 SYS_INIT_NAMED(handle_nmi_again, handle_nmi, POST_KERNEL, CONFIG_AGV_OUTPUT_INIT_PRIORITY);
 
 #if defined(CONFIG_AGV_RAM_ECC)
-/* Before there are interrupts, and before a stack has a guard that cannot be written. */
+/* Before there are interrupts, and before a stack has a guard that cannot be written; but after Zephyr has switched on what
+ * makes reading the AXI SRAM reliable (ST's errata sheet ES0392, 2.2.9). */
 static int watch_ram(void) {
     static const zephyr_chip_ram_t regions[] = {
         {.start = DT_REG_ADDR(DT_CHOSEN(zephyr_sram)), .size = DT_REG_SIZE(DT_CHOSEN(zephyr_sram))},
@@ -109,7 +110,7 @@ static int watch_ram(void) {
     return 0;
 }
 
-SYS_INIT(watch_ram, PRE_KERNEL_1, 0);
+SYS_INIT(watch_ram, PRE_KERNEL_1, 1);
 #endif
 
 #if defined(CONFIG_AGV_RAM_PARITY)

@@ -40,6 +40,13 @@ static hal_reset_cause_t cause_of_end(const zephyr_hal_end_t *end) {
     return (end->reason == (uint32_t)HAL_END_TASK_WATCHDOG) ? HAL_RESET_WATCHDOG : HAL_RESET_LOCK_UP;
 }
 
+/* Where a brown-out has no flag of its own, it may look like a power-on. */
+static bool power_on_is_certain(void) {
+    uint32_t supported = 0u;
+    const bool known = hwinfo_get_supported_reset_cause(&supported) == 0;
+    return !IS_ENABLED(CONFIG_AGV_BROWN_OUT_IS_POWER_ON) && (!known || ((supported & RESET_BROWNOUT) != 0u));
+}
+
 /*
  * The flags accumulate until they are cleared. A power-on is reported only if no later reset set another flag. A
  * power-on itself may also set the flags of brown-out and reset pin.
@@ -56,7 +63,8 @@ static hal_reset_cause_t cause_of(uint32_t flags, hal_reset_cause_t noted) {
         return noted;
     }
     if ((flags & RESET_POR) != 0u) {
-        return ((flags & ~with_power_on) == 0u) ? HAL_RESET_POWER_ON : HAL_RESET_UNKNOWN;
+        const bool is_alone = (flags & ~with_power_on) == 0u;
+        return (is_alone && power_on_is_certain()) ? HAL_RESET_POWER_ON : HAL_RESET_UNKNOWN;
     }
     return ((flags & RESET_BROWNOUT) != 0u) ? HAL_RESET_BROWN_OUT : HAL_RESET_UNKNOWN;
 }

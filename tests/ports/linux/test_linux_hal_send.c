@@ -95,6 +95,24 @@ void test_of_older_frames_with_one_identifier_the_newest_waits_and_is_as_old_as_
     TEST_ASSERT_EQUAL_UINT32(0, pending_ms());
 }
 
+void test_a_frame_that_replaces_the_only_one_waits_in_its_place(void) {
+    vcan_stick();
+    send_numbered(0x10F, 0);
+    send_numbered(0x105, 1);
+    fill_kernel_queue();
+    (void)port_drain(&hal); /* 10Fh was sent, 105h finds no room */
+    vcan_pause_ms(2);
+    send_numbered(0x105, 2);
+    TEST_ASSERT_TRUE(pending_ms() >= 2);
+    vcan_unstick();
+    vcan_drain(tester);
+    (void)linux_hal_tick(&hal);
+    (void)port_drain(&hal);
+    vcan_expect(tester, 0x105, 1, (const uint8_t[8]){2});
+    vcan_expect_nothing(tester);
+    TEST_ASSERT_EQUAL_UINT32(0, pending_ms());
+}
+
 void test_extended_identifiers_are_ranked_as_on_the_bus(void) {
     hal_can_frame_t frame = vcan_frame(0x10F);
     TEST_ASSERT_TRUE(hal_can_send(&hal, HAL_CAN_VEHICLE, &frame));

@@ -93,7 +93,7 @@ typedef struct {
     hal_can_state_t state;
     uint16_t bus_offs;
     uint16_t lost; /**< frames lost because the queue was full */
-    bool running;  /**< started without an error */
+    bool running;  /**< started without an error; otherwise it stays off the bus, and is reported as bus-off */
     bool listen_only;
     bool sent_is_purged;
     zephyr_hal_waiting_t sent;                           /**< the frame that the driver has */

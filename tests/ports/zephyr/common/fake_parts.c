@@ -167,6 +167,7 @@ void fake_parts_reset(void) {
     fake_watchdog_feeds = 0u;
     fake_reset_flags = RESET_POR;
     fake_reset_error = 0;
+    fake_reset_supported = 0u;
     fake_reset_reads = 0u;
     fake_reset_clears = 0u;
 }
@@ -273,6 +274,7 @@ DT_FOREACH_STATUS_OKAY(agv_test_watchdog, WATCHDOG)
 /* The reset flags. */
 uint32_t fake_reset_flags;
 int fake_reset_error;
+uint32_t fake_reset_supported;
 uint32_t fake_reset_reads;
 uint32_t fake_reset_clears;
 
@@ -280,6 +282,11 @@ int z_impl_hwinfo_get_reset_cause(uint32_t *cause) {
     fake_reset_reads++;
     *cause = fake_reset_flags;
     return fake_reset_error;
+}
+
+int z_impl_hwinfo_get_supported_reset_cause(uint32_t *supported) {
+    *supported = fake_reset_supported;
+    return (fake_reset_supported != 0u) ? 0 : -ENOSYS;
 }
 
 int z_impl_hwinfo_clear_reset_cause(void) {

@@ -80,6 +80,8 @@ extern fake_window_watchdog_t fake_window_watchdog;
 /** Reset flags of hwinfo, until they are cleared; number of reads and of clears. */
 extern uint32_t fake_reset_flags;
 extern int fake_reset_error;
+/** The flags that the chip has, as its driver says; 0: the driver does not say. */
+extern uint32_t fake_reset_supported;
 extern uint32_t fake_reset_reads;
 extern uint32_t fake_reset_clears;
 

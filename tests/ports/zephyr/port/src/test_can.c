@@ -42,6 +42,10 @@ ZTEST(port_can, test_a_controller_that_recovers_by_itself_is_refused) {
     fake_parts_reset();
     vehicle->able = 0u;
     zassert_false(fixture_begin());
+    zassert_equal(fixture_status().state, HAL_CAN_BUS_OFF);
+    hal_can_recover(&hal, HAL_CAN_VEHICLE);
+    zassert_false(vehicle->started, "the recovery starts no controller that was refused");
+    zassert_equal(vehicle->recoveries, 0u);
 }
 
 /* Shows: TIM-4 */

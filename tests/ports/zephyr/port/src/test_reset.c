@@ -50,6 +50,16 @@ ZTEST(port_reset, test_the_flags_are_read_once_and_cleared) {
 }
 
 /* Shows: FSM-7 */
+ZTEST(port_reset, test_a_power_on_is_uncertain_where_a_brown_out_has_no_flag) {
+    fake_reset_supported = RESET_POR | RESET_PIN;
+    zassert_equal(cause_after(RESET_POR), HAL_RESET_UNKNOWN);
+    fake_reset_supported = RESET_POR | RESET_BROWNOUT;
+    zassert_equal(cause_after(RESET_POR), HAL_RESET_POWER_ON);
+    fake_reset_supported = 0u; /* the driver does not tell */
+    zassert_equal(cause_after(RESET_POR), HAL_RESET_POWER_ON);
+}
+
+/* Shows: FSM-7 */
 ZTEST(port_reset, test_without_flags_the_cause_is_unknown) {
     fake_reset_error = -ENOSYS;
     zassert_equal(cause_after(RESET_POR), HAL_RESET_UNKNOWN);
@@ -129,6 +139,23 @@ ZTEST(port_reset, test_the_window_watchdog_is_fed_at_every_20th_feed) {
         hal_watchdog_feed(&hal);
     }
     zassert_equal(window->feeds, before + 2u);
+}
+
+/* Shows: TIM-3 */
+ZTEST(port_reset, test_the_window_watchdog_is_fed_in_time_when_steps_come_late) {
+    const fake_window_watchdog_t *const window = &fake_window_watchdog;
+    const uint32_t before = window->feeds;
+    for (uint32_t i = 0u; (i < 20u) && (window->feeds == before); i++) {
+        hal_watchdog_feed(&hal);
+    }
+    const uint32_t first = window->feeds;
+    const uint32_t outside = window->outside;
+    for (uint32_t i = 0u; i < 60u; i++) {
+        k_msleep(8);
+        hal_watchdog_feed(&hal);
+    }
+    zassert_equal(window->outside, outside);
+    zassert_equal(window->feeds, first + 20u, "at every third step: 24 ms apart");
 }
 
 /* Shows: FSM-4 */
