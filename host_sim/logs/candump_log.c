@@ -13,8 +13,10 @@
 
 #ifdef CANDUMP_NO_OPTIONS
 #define CUT_OFF "; the log is cut off in this line"
+#define GZIP_CUT_OFF ""
 #else
 #define CUT_OFF "; the log is cut off in this line; --skip-bad-lines skips it" /* as all commands with a log have it */
+#define GZIP_CUT_OFF "; --skip-bad-lines reads up to there"
 #endif
 
 bool candump_open(candump_log_t *log, const char *path, bool skip_bad) {
@@ -100,12 +102,12 @@ static bool fill(candump_log_t *log) {
     if ((count < 0) && log->gunzip.is_cut_off && log->skip_bad) {
         note("%s: %s; read up to there", log->name, wrong);
     } else if (count < 0) {
-        const char *way = log->gunzip.is_cut_off ? "; --skip-bad-lines reads up to there" : "";
-        return (wrong != NULL) && report("%s: %s%s", log->name, wrong, way);
+        return (wrong != NULL) && report("%s: %s%s", log->name, wrong, log->gunzip.is_cut_off ? GZIP_CUT_OFF : "");
     }
-    log->at_end = count <= 0;
-    log->end += (count > 0) ? (size_t)count : 0;
-    log->frameless += (count > 0) ? (size_t)count : 0;
+    const size_t more = (count > 0) ? (size_t)count : 0;
+    log->at_end = more == 0;
+    log->end += more;
+    log->frameless += more;
     const bool is_known = log->format != CANDUMP_FORMAT_UNKNOWN;
     const uint64_t most = is_known ? CANDUMP_FRAMELESS_MAX : CANDUMP_UNKNOWN_MAX;
     if (log->frameless > most) {
