@@ -106,9 +106,16 @@ static void trip_now(hazard_t *hazard, uint32_t within_ms) {
     hold->kept_until_ms = 0;
 }
 
+/** A command that leaves now may be so old: the transmitter may have taken nothing before, or the supervisor hung. */
+static uint32_t age_ms(const hazard_t *hazard) {
+    const uint64_t waited_ms = hazard->t_ms - hazard->trip.free_ms;
+    const uint64_t most_ms = hazard->config->tx_stalled_ms;
+    return (uint32_t)FRESH_MS + (uint32_t)((waited_ms < most_ms) ? waited_ms : most_ms);
+}
+
 void hazard_hold_trip(hazard_t *hazard) {
     /* An open output without a safe command: the trip came when the first frame did not leave. */
-    trip_now(hazard, (uint32_t)FRESH_MS + (hazard->closed ? 0 : hazard->config->tx_stalled_ms));
+    trip_now(hazard, hazard->closed ? age_ms(hazard) : (uint32_t)FRESH_MS + hazard->config->tx_stalled_ms);
 }
 
 /** Manual was reported, or the EPS took no angle: it may have turned, and what it measured before is out of date. */
@@ -207,7 +214,7 @@ void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
     }
     if ((hold->last_ms == 0) || (hazard->t_ms - hold->last_ms > NEW_HOLD_MS) || (value != hold->value) ||
         (hold->last_ms < hazard->mode.handback_ms)) {
-        hold->now = range_now(hazard, FRESH_MS);
+        hold->now = range_now(hazard, age_ms(hazard));
         hold->is_wrong = false;
     }
     hold->last_ms = hazard->t_ms;

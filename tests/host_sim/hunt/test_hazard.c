@@ -251,6 +251,11 @@ static const stub_t STEERS_ONCE = {.safe_ms = TRIP_MS,
                                    .holds = true,
                                    .hold_ddeg = -300,
                                    .hold_ms = TRIP_MS + 190};
+static const stub_t HOLDS_AN_OLD_ANGLE = {.safe_ms = TRIP_MS + 200,
+                                          .open_ms = TRIP_MS + 700,
+                                          .holds = true,
+                                          .hold_ddeg = 150,
+                                          .setting = "tx_stalled_ms: 500\n"};
 static const stub_t IGNORES_PARK = {.setting = "class_gear_status_timeout: warn\n"};
 static const stub_t IGNORES_FLOOD = {.setting = "class_command_too_fast: trip\n  command_too_fast_gaps: 65\n"};
 static const stub_t OVERRIDES_SOON = {
@@ -264,6 +269,9 @@ static const stub_t PARKS_LATER = {.rolls = true,
                                    .setting = "park: at_standstill\n"};
 static const stub_t PARKS = {.safe_ms = TRIP_MS, .parks_ms = TRIP_MS + 50, .setting = SOON_PARKS};
 
+#define TURNS                                                                                                          \
+    "  - {at_ms: 2600, ai: drive, gear: D, throttle_pct: 60, steer_deg: -60}\n"                                        \
+    "  - {at_ms: 3190, ai: mute, message: steering_command}\n"
 #define NOT_OBEYED "the vehicle does not obey the safe commands"
 #define ANOTHER_ANGLE "the supervisor steers to another angle"
 #define NOT_SENT "the supervisor sent a command that the AI computer did not send"
@@ -353,6 +361,10 @@ static const struct {
      &(const stub_t){.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 400, .holds = true},
      "  - {at_ms: 2990, vcu: set, field: mode_bits, value: 2h}\n"
      "  - {at_ms: 2990, ai: mute, message: steering_command}\n"},
+    /* a transmitter that took nothing for some time: the trip, and its angle, may be so old */
+    {HAZARD_STEERING, ANOTHER_ANGLE, &HOLDS_AN_OLD_ANGLE, NULL, TURNS},
+    {HAZARD_NONE, NULL, NULL, &HOLDS_AN_OLD_ANGLE,
+     "  - {at_ms: 2500, supervisor: fill_queue}\n" TURNS "  - {at_ms: 3195, supervisor: free_queue}\n"},
     /* manual drops the angle of the trip soon after it was sent late: one frame that was on its way still leaves */
     {HAZARD_STEERING, ANOTHER_ANGLE, &STEERS_LATE, &STEERS_ONCE, MANUAL_SOON},
     {HAZARD_STEERING, ANOTHER_ANGLE, &(const stub_t){.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 10, .holds = true}, NULL,
