@@ -45,7 +45,8 @@ static void take_status(replay_recorded_t *recorded, const hal_can_frame_t *fram
     if (agv_state_name(state) == NULL) {
         return;
     }
-    if (agv_state_is_latched(state) && (recorded->trip_us == 0)) {
+    if (agv_state_is_latched(state) && (recorded->trip_us == 0) && !recorded->began_tripped) {
+        recorded->began_tripped = recorded->state == 0;
         recorded->reason = (agv_fault_t)frame->data[REASON_AT];
         recorded->trip_us = t_us;
         recorded->commands_us = (recorded->is_off && (recorded->off_us > recorded->state_us)) ? recorded->off_us : t_us;

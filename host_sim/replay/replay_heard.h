@@ -24,6 +24,7 @@ typedef struct {
     uint64_t state_us;    /**< when it came */
     bool is_off;          /**< the last turn_signal_command has autopilot off */
     uint64_t off_us;      /**< the first one that does, of several in a row */
+    bool began_tripped;   /**< the first status frame reported a trip, from before the log */
     agv_fault_t reason;   /**< of the first trip */
     uint64_t trip_us;     /**< when the status frame reported it; 0: never */
     uint64_t commands_us; /**< when the safe commands began, before that */

@@ -10,7 +10,7 @@
 #include "why/why_table.h"
 #include "why/why_words.h"
 
-/* BURST_US: so long before the first 43Fh of a trip its other safe commands may come. */
+/* BURST_US: the other safe commands of a trip come before its first 43Fh, by this time at most. */
 enum { SHOWN_IDS = 6, PAUSE_US = US_PER_S, BURST_US = 5 * US_PER_MS };
 
 static bool is_heard(const replay_heard_t *heard, uint32_t id) {
@@ -312,7 +312,7 @@ static void add_until(text_t *text, const replay_recorded_t *recorded) {
     } else if (recorded->commands_us > BURST_US) {
         text_add(text, "--until %" PRIu64 "ms --tail 200ms", (recorded->commands_us - BURST_US) / US_PER_MS);
     } else {
-        text_add(text, "a log that begins earlier");
+        text_add(text, "record again, and begin earlier");
     }
 }
 
@@ -325,7 +325,9 @@ static bool hint_supervisor(text_t *text, const replay_clues_t *clues) {
     }
     text_add(text, "%03Xh received: a supervisor was active, and its commands are in this log",
              (unsigned)clues->config->status_frame_id);
-    if ((recorded->trip_us > 0) && (reason != NULL)) {
+    if (recorded->began_tripped && (reason != NULL)) {
+        text_add(text, ". It had tripped by %s before the log began", reason);
+    } else if ((recorded->trip_us > 0) && (reason != NULL)) {
         text_add(text, ". It tripped by %s, reported at ", reason);
         why_words_time(text, recorded->trip_us);
         text_add(text, ". To see the cause: ");

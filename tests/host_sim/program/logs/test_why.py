@@ -66,6 +66,17 @@ class ASupervisorWasActive(Case):
         self.assertEqual(self.trip(lines), "tripped     at 2.030 s (22:13:22.030): REMOTE_SIGNAL_LOST")
         self.assertIn("my.log: 2.100 s on can0, 2023-11-14 22:13:20.000 to 22:13:22.100", lines)
 
+    def test_it_had_tripped_before(self):
+        _, log = self.recorded(stop(("steering_command",), 2000))
+        late = "".join(line for line in log.splitlines(keepends=True) if line >= "(1700000002.250000)")
+        self.assertIn("            by STEERING_COMMAND_TIMEOUT before the log began", self.text(late))
+
+    def test_a_status_frame_of_somebody_else(self):
+        log = traffic.log(traffic.frames(1000))
+        for data in ("0000000000000000", "55C8000000000000", "55FF000000000000", "552A"):
+            lines = self.text(log + "(1700000001.000000) can0 7F0#%s\n" % data)
+            self.assertNotIn("tripped by", " ".join(lines))
+
     def test_it_did_not_trip(self):
         _, log = self.recorded(None)
         self.assertEqual(self.text(log)[0], "hint        7F0h received: a supervisor was active, and its commands are in this log")
