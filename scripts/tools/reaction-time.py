@@ -362,7 +362,7 @@ def cause_text(tables, row):
 
 
 def why(derived, figures, row):
-    """Why a derived time is more than 1.25 times the measured one: what was not met in the runs."""
+    """Why a derived time is more than 1.25 times the measured one: what was not reached in the runs."""
     reasons = set()
     for (fault, topology, bitrate), time in sorted(derived.reaction.items()):
         seen = figures.get((fault, topology, bitrate))
@@ -376,7 +376,7 @@ def why(derived, figures, row):
 
 def reaction_table(derived, figures, rows):
     head = ["fault", "known by"] + [f"{topology} {bitrate // 1000}" for topology in TOPOLOGIES for bitrate in BITRATES]
-    lines = ["| " + " | ".join(head + ["not met"]) + " |", "|" + "---|" * (len(head) + 1)]
+    lines = ["| " + " | ".join(head + ["not reached"]) + " |", "|" + "---|" * (len(head) + 1)]
     for row in rows:
         cells = [f"`{row['fault'].removesuffix(ENGAGED)}`" + (" (output)" if "output" in row["flags"] else ""),
                  cause_text(derived.tables, row)]
