@@ -84,6 +84,7 @@ static void take_frames(supervise_t *self) {
             return;
         }
         agv_supervisor_frame(&self->supervisor, &self->ports, side, &frame);
+        zephyr_hal_transmit(&self->hal); /* the safe commands of a trip do not wait for a backlog */
         count(self, &frame);
     }
 }

@@ -54,10 +54,11 @@ static void on_frame(const struct device *device, struct can_frame *frame, void 
     k_sem_give(side->wake);
 }
 
-static void sent(zephyr_hal_side_t *side, bool is_odd) {
+static void sent(zephyr_hal_side_t *side, bool is_odd, bool has_left) {
     const k_spinlock_key_t key = k_spin_lock(&side->lock);
     if (side->newest_is_odd == is_odd) {
         side->in_flight = false;
+        side->has_left = has_left;
     }
     k_spin_unlock(&side->lock, key);
     k_sem_give(side->wake);
@@ -67,14 +68,12 @@ static void sent(zephyr_hal_side_t *side, bool is_odd) {
  * They alternate when a frame is taken back: a driver that reports it late does not report the next frame as sent. */
 static void on_even_sent(const struct device *device, int error, void *user_data) {
     ARG_UNUSED(device);
-    ARG_UNUSED(error);
-    sent(user_data, false);
+    sent(user_data, false, error == 0);
 }
 
 static void on_odd_sent(const struct device *device, int error, void *user_data) {
     ARG_UNUSED(device);
-    ARG_UNUSED(error);
-    sent(user_data, true);
+    sent(user_data, true, error == 0);
 }
 
 static hal_can_state_t state_of(enum can_state state) {
@@ -195,6 +194,7 @@ bool zephyr_hal_receive(hal_t *hal, hal_can_side_t *side, hal_can_frame_t *frame
 static void set_in_flight(zephyr_hal_side_t *side, bool in_flight) {
     const k_spinlock_key_t key = k_spin_lock(&side->lock);
     side->in_flight = in_flight;
+    side->has_left = false;
     k_spin_unlock(&side->lock, key);
 }
 
@@ -268,18 +268,21 @@ static void start_again(zephyr_hal_side_t *side) {
 }
 
 /* Zephyr's only way is a stop. Its result does not matter: a controller that has not stopped does not start again either. A
- * start sets the error counters to 0; the stops are far enough apart for a bus-off, which takes 32 failed frames. */
-static void take_back(zephyr_hal_side_t *side) {
+ * start may set the error counters to 0; from 250 kbit/s on the stops are far enough apart for a bus-off, which takes 32
+ * failed frames. Returns false when the frame left before the stop. */
+static bool take_back(zephyr_hal_side_t *side) {
     (void)can_stop(side->device);
     const k_spinlock_key_t key = k_spin_lock(&side->lock);
     side->in_flight = false;
     side->newest_is_odd = !side->newest_is_odd;
     side->is_halted = side->state == HAL_CAN_BUS_OFF; /* reported during the stop: it waits for hal_can_recover() */
     const bool is_off = side->is_halted;
+    const bool has_left = side->has_left;
     k_spin_unlock(&side->lock, key);
     if (!is_off) {
         start_again(side);
     }
+    return !has_left;
 }
 
 /* Not in bus-off, because a start would end it, nor while the controller only listens. */
@@ -295,7 +298,7 @@ static bool is_kept_from_the_bus(zephyr_hal_side_t *side, uint32_t now_ms, uint3
 /* A frame that was purged while it could be on the bus is taken back when it turns out that it is not. */
 static void withdraw_purged(zephyr_hal_side_t *side, uint32_t now_ms) {
     if (is_kept_from_the_bus(side, now_ms, FRAME_TURN_MS)) {
-        take_back(side);
+        (void)take_back(side);
     }
 }
 
@@ -311,8 +314,7 @@ void hal_can_purge(hal_t *hal, hal_can_side_t side) {
 /* A frame that is kept from the bus lets those of higher priority go first. */
 static void make_way(zephyr_hal_side_t *side, uint32_t now_ms) {
     const bool in_the_way = (side->waiting_count > 0u) && (side->waiting[0].frame.id < side->sent.frame.id);
-    if (in_the_way && is_kept_from_the_bus(side, now_ms, FRAME_PATIENCE_MS)) {
-        take_back(side);
+    if (in_the_way && is_kept_from_the_bus(side, now_ms, FRAME_PATIENCE_MS) && take_back(side)) {
         zephyr_queue_put_back(side, &side->sent);
     }
 }

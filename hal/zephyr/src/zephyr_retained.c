@@ -44,7 +44,7 @@ static hal_reset_cause_t cause_of_end(const zephyr_hal_end_t *end) {
 static bool power_on_is_certain(void) {
     uint32_t supported = 0u;
     const bool known = hwinfo_get_supported_reset_cause(&supported) == 0;
-    return !IS_ENABLED(CONFIG_AGV_BROWN_OUT_IS_POWER_ON) && (!known || ((supported & RESET_BROWNOUT) != 0u));
+    return !IS_ENABLED(CONFIG_AGV_BROWN_OUT_IS_POWER_ON) && known && ((supported & RESET_BROWNOUT) != 0u);
 }
 
 /*

@@ -85,8 +85,9 @@ typedef struct {
     struct k_sem *wake;
     struct k_msgq received;
     char received_buffer[CONFIG_AGV_CAN_RX_QUEUE * sizeof(hal_can_frame_t)];
-    struct k_spinlock lock; /**< protects the next members up to `lost`, which callbacks write */
+    struct k_spinlock lock; /**< protects what the callbacks write: the next members up to `lost` */
     bool in_flight;         /**< the driver has a frame */
+    bool has_left;          /**< the driver sent its last frame; false: it still has it, or discarded it */
     bool newest_is_odd;     /**< changes with each frame that is taken back from the driver */
     bool is_halted;         /**< it did not start again after a frame was taken back: reported as bus-off */
     bool callback_gave_state;
@@ -152,7 +153,7 @@ typedef struct {
 
 /** Settings of the port. */
 typedef struct {
-    uint32_t bitrate;
+    uint32_t bitrate; /**< in bit/s */
     uint16_t sample_point_permille;
     uint32_t watchdog_ms;
     bool listen_only;                  /**< the controllers do not acknowledge and cannot send */
@@ -162,8 +163,8 @@ typedef struct {
 } zephyr_hal_config_t;
 
 /**
- * Start the port: self-test of registers and RAM, output open (as it is since boot), watchdog, reset cause, LED dark, store,
- * controllers on the bus, self-test of the flash, 1 ms tick. After the failure of a part the other parts are started all the
+ * Start the port: self-test of registers, RAM and flash, output open (as it is since boot), watchdog, reset cause, LED dark,
+ * inputs, second clock, log, controllers on the bus, 1 ms tick. After the failure of a part the other parts are started all the
  * same, because the supervisor can then still trip.
  * @return true: all parts work. hal_self_test() tells the supervisor which ones do not
  */
@@ -178,7 +179,7 @@ void zephyr_hal_wait(hal_t *hal);
  */
 bool zephyr_hal_receive(hal_t *hal, hal_can_side_t *side, hal_can_frame_t *frame);
 
-/** Pass waiting frames to the drivers. Call it after each wait. */
+/** Pass waiting frames to the drivers. Call it after each received frame and after each tick. */
 void zephyr_hal_transmit(hal_t *hal);
 
 /** Whether the safety output reads as open. For the self-test, before the output is first closed. */

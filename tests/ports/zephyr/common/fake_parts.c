@@ -44,6 +44,10 @@ static int stop(const struct device *device) {
     if (bus->bus_off_at_stop) {
         end_of_bus(bus);
     }
+    if (bus->sends_at_stop) {
+        bus->in_mailbox = 0u;
+        bus->sent_callback(device, 0, bus->sent_data);
+    }
     bus->started = false;
     bus->state = CAN_STATE_STOPPED;
     bus->state_callback(device, CAN_STATE_STOPPED, (struct can_bus_err_cnt){0}, bus->state_data);

@@ -23,6 +23,7 @@ typedef struct {
     int start_error;      /**< result of the next starts; 0: it starts */
     bool is_late;         /**< a stop does not report the frame that it discards */
     bool bus_off_at_stop; /**< the controller enters bus-off just before it is stopped */
+    bool sends_at_stop;   /**< the frame leaves just before the stop */
     can_mode_t able;      /**< its reported capabilities */
     can_mode_t mode;
     struct can_timing timing;

@@ -26,6 +26,7 @@ static void take_frames(void) {
             return;
         }
         agv_supervisor_frame(&supervisor, &ports, side, &frame);
+        zephyr_hal_transmit(&hal); /* the safe commands of a trip do not wait for a backlog */
     }
 }
 

@@ -340,6 +340,20 @@ ZTEST(port_can, test_a_frame_that_is_kept_from_the_bus_lets_those_of_higher_prio
     expect_on_the_bus();
 }
 
+/* The transmit interrupt comes between the port's decision and the stop. */
+/* Shows: TOP-1 */
+ZTEST(port_can, test_a_frame_that_leaves_just_before_the_stop_is_not_sent_twice) {
+    (void)send(0x43Fu, 1u);
+    (void)send(0x075u, 2u);
+    vehicle->sends_at_stop = true;
+    k_msleep(25);
+    zephyr_hal_transmit(&hal);
+    zassert_equal(vehicle->stops, 1u);
+    leaves_next(0x075u, 2u);
+    zassert_equal(vehicle->sent_count, 2u);
+    zassert_equal(fixture_status().tx_pending_ms, 0u);
+}
+
 /* Shows: TOP-1 */
 ZTEST(port_can, test_a_frame_of_the_highest_priority_is_left_in_the_controller) {
     (void)send(0x065u, 1u);

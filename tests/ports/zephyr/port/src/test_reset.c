@@ -50,13 +50,13 @@ ZTEST(port_reset, test_the_flags_are_read_once_and_cleared) {
 }
 
 /* Shows: FSM-7 */
-ZTEST(port_reset, test_a_power_on_is_uncertain_where_a_brown_out_has_no_flag) {
+ZTEST(port_reset, test_a_power_on_is_certain_only_where_a_brown_out_has_a_flag) {
     fake_reset_supported = RESET_POR | RESET_PIN;
     zassert_equal(cause_after(RESET_POR), HAL_RESET_UNKNOWN);
     fake_reset_supported = RESET_POR | RESET_BROWNOUT;
     zassert_equal(cause_after(RESET_POR), HAL_RESET_POWER_ON);
     fake_reset_supported = 0u; /* the driver does not tell */
-    zassert_equal(cause_after(RESET_POR), HAL_RESET_POWER_ON);
+    zassert_equal(cause_after(RESET_POR), HAL_RESET_UNKNOWN);
 }
 
 /* Shows: FSM-7 */
