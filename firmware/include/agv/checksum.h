@@ -1,6 +1,6 @@
 /**
  * @file checksum.h
- * Checksums over bytes.
+ * Checksums: CRC-32 for what is stored or compared (INT-3, FSM-7, HW-4), a fast one for the supervisor's memory (INT-5).
  */
 #ifndef AGV_CHECKSUM_H
 #define AGV_CHECKSUM_H
@@ -19,7 +19,7 @@ uint32_t agv_crc32(uint32_t crc, const void *bytes, size_t size);
 
 /**
  * Fast checksum over memory: the inverted exclusive-or of its 32-bit words. Detects every single flipped bit.
- * @param size bytes, a multiple of 8
+ * @param size bytes, a multiple of 8; a rest is not checked
  */
 uint32_t agv_seal(const void *words, size_t size);
 

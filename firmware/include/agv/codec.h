@@ -128,7 +128,7 @@ typedef struct {
 
 /** 050h. */
 typedef struct {
-    uint16_t throttle_permille; /**< 0..1000 in steps of 4 */
+    uint16_t throttle_permille; /**< 0..1000 in steps of 4; packing rounds down */
 } agv_throttle_status_t;
 
 /** 067h. */
@@ -162,7 +162,7 @@ typedef struct {
 /**
  * Whether the gear, throttle, steering angle or EPS mode that a message carries is valid. The result is that of
  * agv_unpack_X for this message, without unpacking it.
- * @return true for messages in which every value is valid.
+ * @return true for messages in which every value is valid, and for AGV_MSG_NONE and values above.
  */
 bool agv_value_is_valid(uint32_t message, const uint8_t data[AGV_DLC]);
 

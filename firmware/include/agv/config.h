@@ -92,7 +92,8 @@ bool agv_config_is_trip(const agv_config_t *config, uint32_t fault);
 
 /**
  * The identifiers of a configuration (P1). Each is the value of its setting id_...; when `id_set` is `table`, a setting
- * that has its default value stands for the identifier of the set `table`.
+ * that has its default value stands for the identifier of the set `table`. With an invalid `id_set` (a configuration that is refused)
+ * such a setting gives a value above AGV_ID_MAX.
  */
 void agv_config_ids(const agv_config_t *config, agv_ids_t *ids);
 

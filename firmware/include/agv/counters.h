@@ -17,13 +17,15 @@ typedef enum {
     AGV_REJECTED_KINDS
 } agv_rejected_t;
 
-/** The counters of one supervisor. */
+/** The counters of one supervisor, since its start (INT-2). They go on after MEMORY_CORRUPTED, and wrap. */
 typedef struct {
-    uint32_t received; /**< frames received, of any kind, on both sides */
-    uint32_t rejected[AGV_REJECTED_KINDS];
-    uint32_t dropped;  /**< invalid commands, frames of the wrong side, and frames that were not sent or forwarded */
-    uint32_t sent;     /**< frames that the HAL accepted */
-    uint32_t shadowed; /**< frames not sent because of the shadow mode (TOP-4) */
+    uint32_t received;                     /**< frames received, of any kind, on both sides */
+    uint32_t rejected[AGV_REJECTED_KINDS]; /**< frames that were not evaluated, by reason */
+    uint32_t
+        dropped; /**< invalid commands, frames of the wrong side or (gateway) with an unknown identifier, and frames that were
+                            not sent or forwarded */
+    uint32_t sent;          /**< frames that the HAL accepted */
+    uint32_t shadowed;      /**< frames not sent because of the shadow mode (TOP-4) */
     uint32_t gate_refused;  /**< frames that the gate refused (INT-4) */
     uint32_t skipped_slots; /**< transmit slots missed after an overrun (TIM-1) */
     uint32_t limited;       /**< commands that the gateway limited (TOP-2) */

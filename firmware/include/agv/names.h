@@ -14,7 +14,7 @@
 /** Name of a fault, such as "EPS_HEARTBEAT_LOST"; NULL for AGV_FAULT_NONE and values above. */
 const char *agv_fault_name(agv_fault_t fault);
 
-/** The fault with this name; AGV_FAULT_NONE if there is none. */
+/** The fault with this name; AGV_FAULT_NONE if there is none. @param name not NULL */
 agv_fault_t agv_fault_from_name(const char *name);
 
 /** Name of a class: "trip" or "warn". */

@@ -46,7 +46,7 @@ typedef struct {
     uint16_t of[AGV_MSG_COUNT];
 } agv_ids_t;
 
-/** The bit of a message in a set of messages. @param message agv_message_t */
+/** The bit of a message in a set of messages. @param message agv_message_t, at most 31 */
 static inline uint32_t agv_message_bit(uint32_t message) {
     return (uint32_t)1u << message;
 }

@@ -16,15 +16,15 @@
 #include "agv/faults.h"
 #include "agv/protocol.h"
 
-/** Number of events kept: a power of two. A build for a part with little RAM defines a smaller one. */
+/** Number of events kept (INT-3): a power of two, at least 16. A build for a part with little RAM defines a smaller one. */
 #ifndef AGV_RECORDER_EVENTS
 #define AGV_RECORDER_EVENTS 256u
 #endif
 
-/** Number of trips kept. */
+/** Number of trips kept (INT-3). */
 #define AGV_RECORDER_TRIPS 8u
 
-/** Maximum number of events per second of the same fault. */
+/** Maximum number of events per second of the same fault (INT-3). */
 #define AGV_RECORDER_FAULTS_PER_S 4u
 
 /** Kind of an event, and the meaning of its fields. */
@@ -114,7 +114,7 @@ void agv_recorder_frame(agv_recorder_t *recorder, uint32_t message, const uint8_
 
 /**
  * Record an event with a snapshot of the last frames. It replaces the oldest one when the buffer is full. An event of a
- * fault that was recorded four times within the last second is only counted.
+ * fault that was recorded four times within the last second is only counted. @p entry must have one of the kinds above.
  */
 void agv_recorder_add(agv_recorder_t *recorder, const agv_entry_t *entry, uint32_t time_ms);
 
@@ -130,7 +130,7 @@ uint32_t agv_recorder_next_sequence(const agv_recorder_t *recorder);
 
 /**
  * Read an event by its sequence number.
- * @return false if the event is not in the buffer (replaced, or never recorded), or its checksum is wrong.
+ * @return false if the event is not in the buffer (replaced, or never recorded), or its checksum is wrong; then @p event is unchanged
  */
 bool agv_recorder_get(const agv_recorder_t *recorder, uint32_t sequence, agv_event_t *event);
 
@@ -145,7 +145,10 @@ bool agv_recorder_get_trip(const agv_recorder_t *recorder, uint32_t index, agv_e
 /** The oldest valid event that was not given to the log in flash yet; NULL if there is none. */
 const agv_event_t *agv_recorder_next_to_store(agv_recorder_t *recorder);
 
-/** Note that the event of agv_recorder_next_to_store was given to the log in flash, also when the log refused it. */
+/**
+ * Note that the event of agv_recorder_next_to_store was given to the log in flash, also when the log refused it. Call it only after
+ * that function returned an event.
+ */
 void agv_recorder_stored(agv_recorder_t *recorder);
 
 #endif

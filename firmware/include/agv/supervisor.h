@@ -92,15 +92,21 @@ agv_fault_t agv_supervisor_first_active(const agv_supervisor_t *supervisor);
 bool agv_supervisor_has_fault(const agv_supervisor_t *supervisor, agv_fault_t fault);
 
 /**
- * Age of the last frame of a message in ms; if none was received, the time since the start. UINT32_MAX above
- * 6000 ms, and for AGV_MSG_NONE and values above.
+ * Age of the last frame of a message in ms, at the last tick; if none was received, the time since the start. UINT32_MAX from
+ * some 6000 ms on (messages are aged in turn, one each tick), and for AGV_MSG_NONE and values above.
  */
 uint32_t agv_supervisor_age_ms(const agv_supervisor_t *supervisor, agv_message_t message);
 
-/** Whether a message was received and its deadline has not expired. False for AGV_MSG_NONE and values above. */
+/**
+ * Whether a message was received and its deadline has not expired (SUP-2, SUP-3). For 363h, 067h and 43Fh the deadline counts
+ * from the last *changed* alive counter, so a message with a small age may be stale. False for AGV_MSG_NONE and values above.
+ */
 bool agv_supervisor_is_fresh(const agv_supervisor_t *supervisor, agv_message_t message);
 
-/** Time of the last tick in ms; the time of the start when there was no tick yet. */
+/**
+ * Time of the last tick in ms; the time of the start when there was no tick yet. Later than the time that was passed to the tick
+ * when a frame before it had a later time stamp.
+ */
 uint32_t agv_supervisor_tick_ms(const agv_supervisor_t *supervisor);
 
 /** Whether the safety output is commanded closed (FSM-4). The contact itself may differ (OUTPUT_FEEDBACK, HW-1). */
@@ -115,12 +121,13 @@ bool agv_supervisor_is_at_standstill(const agv_supervisor_t *supervisor);
 /** What the LED shows (LED-1): 0 = healthy, 1..17 = number of flashes, -1 = fast blinking. */
 int8_t agv_supervisor_led_code(const agv_supervisor_t *supervisor);
 
-/** The counters. */
+/** The counters. The pointer is valid as long as the supervisor. */
 const agv_counters_t *agv_supervisor_counters(const agv_supervisor_t *supervisor);
 
 /**
  * The configuration in use: the one passed to agv_supervisor_start. If that was refused or is corrupted: the defaults, with
- * the topology, ID set, identifiers, park and status_frame_id of this vehicle where these are valid (FSM-9).
+ * the topology, ID set, identifiers, park and status_frame_id of this vehicle where these are valid (FSM-9). The pointer is valid
+ * as long as the supervisor.
  */
 const agv_config_t *agv_supervisor_config(const agv_supervisor_t *supervisor);
 

@@ -137,12 +137,16 @@ static void earn_store_credits(agv_core_t *core, uint32_t elapsed_ms) {
     }
 }
 
-/* INT-3: writing flash may stall the processor: only while no reaction can be due, and one event per tick. */
+/* INT-3: writing flash may stall the processor: only while no reaction can be due. In SAFE the vehicle may still move. */
+static bool may_store(const agv_core_t *core) {
+    const bool stands = agv_vehicle_is_at_standstill(&core->timers);
+    return ((core->machine.state == (uint8_t)AGV_STATE_STANDBY) && stands) ||
+           ((core->machine.state == (uint8_t)AGV_STATE_SAFE) && (stands || !core->machine.output_closed));
+}
+
+/* One event per tick. */
 static void store_events(agv_core_t *core, const agv_ports_t *ports) {
-    const bool idle =
-        (core->machine.state == (uint8_t)AGV_STATE_SAFE) ||
-        ((core->machine.state == (uint8_t)AGV_STATE_STANDBY) && agv_vehicle_is_at_standstill(&core->timers));
-    if (!idle || (core->store_credits == 0u)) {
+    if (!may_store(core) || (core->store_credits == 0u)) {
         return;
     }
     const agv_event_t *const event = agv_recorder_next_to_store(ports->recorder);

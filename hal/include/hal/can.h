@@ -24,7 +24,7 @@ typedef enum { HAL_CAN_VEHICLE = 0, HAL_CAN_AI = 1, HAL_CAN_SIDES = 2 } hal_can_
  * frame that this supervisor sent.
  */
 typedef struct {
-    uint32_t id;      /**< 11 or 29 bits */
+    uint32_t id;      /**< 11 or 29 bits; with HAL_CAN_ERROR: not used */
     uint32_t time_ms; /**< clock at reception, rounded down (wraps); ignored when sending */
     uint16_t time_us; /**< microseconds within that millisecond, 0..999; 0 if the port does not know them */
     uint8_t flags;    /**< HAL_CAN_* bits */

@@ -1,7 +1,7 @@
 /**
  * @file watchdog.h
- * The hardware watchdog. The port starts it at boot with the configured period (default 100 ms). Nothing can stop it
- * afterwards.
+ * The hardware watchdog (TIM-3). The port starts it before the first frame, with the configured period (default 100 ms). Nothing
+ * can stop it afterwards.
  */
 #ifndef HAL_WATCHDOG_H
 #define HAL_WATCHDOG_H

@@ -201,6 +201,42 @@ void test_in_safe_each_event_is_copied_once_and_in_order(void) {
     expect_log_holds(next_sequence());
 }
 
+/* A VCU that engages P at speed. */
+static void safe_while_driving(void) {
+    walk_to_tripped_driving(&f, 3000);
+    fixture_vehicle_confirms(&f);
+    fixture_drive(&f, 3000);
+    (void)walk_until(&f, AGV_STATE_SAFE, 100);
+}
+
+/* Shows: INT-3 */
+void test_in_safe_flash_is_not_written_before_standstill(void) {
+    safe_while_driving();
+    const uint32_t before = appended();
+    expect_state_after(&f, 4000, AGV_STATE_SAFE);
+    TEST_ASSERT_EQUAL_UINT32(before, appended());
+    fixture_drive(&f, 0);
+    expect_state_after(&f, 20000, AGV_STATE_SAFE);
+    TEST_ASSERT_EQUAL_UINT32(next_sequence(), appended());
+}
+
+/* The output opens 5 s after the trip (FSM-12). */
+/* Shows: INT-3 */
+void test_in_safe_flash_is_written_when_the_output_is_open(void) {
+    safe_while_driving();
+    const uint32_t before = appended();
+    agv_event_t trip = {0};
+    TEST_ASSERT_TRUE(agv_recorder_get_trip(&f.recorder, 0, &trip));
+    walk_run_to(&f, trip.time_ms + 4999);
+    TEST_ASSERT_EQUAL_UINT32(before, appended());
+    TEST_ASSERT_TRUE(agv_supervisor_output_closed(&f.supervisor));
+    fixture_run(&f, 1);
+    TEST_ASSERT_FALSE(agv_supervisor_output_closed(&f.supervisor));
+    TEST_ASSERT_EQUAL_UINT32(before + 1, appended());
+    expect_state_after(&f, 20000, AGV_STATE_SAFE);
+    TEST_ASSERT_EQUAL_UINT32(next_sequence(), appended());
+}
+
 /* Shows: INT-3 */
 void test_a_flash_that_accepts_nothing_changes_nothing_else(void) {
     walk_to_safe(&f);

@@ -347,7 +347,7 @@ static const struct {
     {AGV_SETTING_hold_age_ms, 49, 51, false, true},
     {AGV_SETTING_confirmed_ms, 4999, 5001, true, false},
     {AGV_SETTING_stop_timeout_ms, 4999, 5001, false, true},
-    {AGV_SETTING_hold_standstill_ms, 4999, 5001, false, false},
+    {AGV_SETTING_hold_standstill_ms, 4999, 5001, true, false},
     {AGV_SETTING_status_frame_id, 0, 0x7F1, true, false},
     {AGV_SETTING_status_frame_id, 1, 0x7FF, false, false},
     {AGV_SETTING_throttle_ceiling_pct, 0, 100, false, false},

@@ -88,12 +88,13 @@ typedef struct {
     uint32_t purges;           /**< read: hal_can_purge() calls */
     uint32_t recover_requests; /**< read: hal_can_recover() calls in bus-off */
     hal_can_status_t status;   /**< direct mode: the status to report; bus mode: the last reported one */
-    bool full;                 /**< direct mode: sim_hal_set_full() */
+    bool full;                 /**< sim_hal_set_full() */
     bool swallows;             /**< sim_hal_set_swallowing() */
     sim_bus_t *bus;
     sim_bus_node_t node;
 } sim_hal_can_t;
 
+/** The simulated microcontroller. The program owns it and reads the members marked *read*. */
 struct hal {
     const hal_ops_t *ops;             /**< first: hal_ops.h */
     sim_hal_can_t can[HAL_CAN_SIDES]; /**< read */

@@ -23,6 +23,7 @@ typedef struct {
     uint8_t bytes[SIM_STORE_RECORD_SIZE_MAX];
 } sim_store_record_t;
 
+/** What outlives a reset: the latch and the log. The program owns it. */
 typedef struct {
     uint8_t latch[HAL_STORE_LATCH_SIZE_MAX];
     uint8_t latch_size;   /**< 0 = nothing stored */

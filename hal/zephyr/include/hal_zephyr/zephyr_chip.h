@@ -24,6 +24,7 @@ typedef struct {
     size_t size;     /**< in bytes, a multiple of 8 */
 } zephyr_chip_ram_t;
 
+/** Read the option bytes. On a chip without them both members are -1. */
 zephyr_chip_options_t zephyr_chip_options(void);
 
 /**
