@@ -29,8 +29,12 @@ static bool add(agv_missing_t *missing, bool is_missing, uint32_t elapsed_ms, ui
 void agv_confirmation_step(agv_confirmation_t *confirmation, agv_timers_t *timers, const agv_config_t *config,
                            uint32_t elapsed_ms, bool autopilot_off, bool in_park) {
     const bool off_late = add(&confirmation->off, !autopilot_off, elapsed_ms, config->confirm_timeout_ms);
-    const bool park_late =
-        add(&confirmation->park, confirmation->park_sent && !in_park, elapsed_ms, config->park_confirm_timeout_ms);
+    bool park_late = false;
+    if (confirmation->park_sent) {
+        park_late = add(&confirmation->park, !in_park, elapsed_ms, config->park_confirm_timeout_ms);
+    } else {
+        confirmation->park.at_tick = elapsed_ms != 0u; /* P may be sent in this step */
+    }
     const bool both = autopilot_off && in_park;
     if (agv_timer_while(timers, AGV_TIMER_CONFIRMED, both)) {
         confirmation->off.sum_ms = 0u;

