@@ -62,7 +62,7 @@ void test_a_warning_is_never_the_reason(void) {
 /* ---- Two deadlines in one tick ---- */
 
 static bool is_trip_by_silence(const cause_t *cause) {
-    return FAULT_ROW[cause->fault].trip && (cause->how == BY_SILENCE || cause->how == BY_SILENCE_ENGAGED);
+    return FAULT_ROW[cause->fault].trip && cause_is_silence(cause);
 }
 
 /* A command is awaited while engaged only, the heartbeat of the AI computer also in manual. */

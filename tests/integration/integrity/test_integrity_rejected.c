@@ -107,7 +107,7 @@ static void check_all_kinds(const cause_t *cause) {
 void test_each_kind_of_each_message(void) {
     unsigned messages = 0;
     for (unsigned i = 0; i < CAUSES; i++) {
-        if (CAUSE[i].how == BY_SILENCE || CAUSE[i].how == BY_SILENCE_ENGAGED) {
+        if (cause_is_silence(&CAUSE[i])) {
             check_all_kinds(&CAUSE[i]);
             messages++;
         }
