@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "agv/names.h"
+#include "causes.h"
 #include "settings_expected.h"
 #include "unity.h"
 
@@ -242,47 +243,10 @@ void test_no_default_weakens_and_nothing_beyond_the_last_setting(void) {
     TEST_ASSERT_FALSE(agv_config_weakens(&config, UINT32_MAX));
 }
 
-/* By hand. All others are trips for good: faults of the heartbeats of VCU and EPS, of the AI computer while engaged, of the EPS,
- * and of the supervisor. */
-static bool may_be_a_warning(unsigned fault) {
-    static const agv_fault_t may[] = {
-        AGV_FAULT_EPS_TEMP_ABOVE_110,
-        AGV_FAULT_S_DRIVER_ALARM,
-        AGV_FAULT_REMOTE_SIGNAL_LOST,
-        AGV_FAULT_REMOTE_POWER_LOST,
-        AGV_FAULT_VCU_LEVEL2_ALARM,
-        AGV_FAULT_GEAR_STATUS_TIMEOUT,
-        AGV_FAULT_THROTTLE_STATUS_TIMEOUT,
-        AGV_FAULT_WHEEL_SPEED_TIMEOUT,
-        AGV_FAULT_STEERING_POSITION_TIMEOUT,
-        AGV_FAULT_GEAR_STATUS_INVALID,
-        AGV_FAULT_THROTTLE_STATUS_INVALID,
-        AGV_FAULT_THROTTLE_DEVIATION,
-        AGV_FAULT_GEAR_DEVIATION,
-        AGV_FAULT_AUTOPILOT_OFF_IGNORED,
-        AGV_FAULT_THROTTLE_IN_PARK,
-        AGV_FAULT_COMMAND_TOO_FAST,
-        AGV_FAULT_SPEED_IMPLAUSIBLE,
-        AGV_FAULT_STATUS_ID_IN_USE,
-        AGV_FAULT_STARTUP_TIMEOUT,
-        AGV_FAULT_RX_OVERRUN,
-        AGV_FAULT_ERROR_PASSIVE,
-        AGV_FAULT_AI_BUS_OFF,
-        AGV_FAULT_WRONG_ID_SET,
-        AGV_FAULT_STORE_INVALID,
-    };
-    for (size_t i = 0; i < sizeof may / sizeof may[0]; i++) {
-        if (may[i] == fault) {
-            return true;
-        }
-    }
-    return false;
-}
-
 /* Shows: INT-2 */
 void test_which_faults_may_be_made_warnings(void) {
     for (unsigned fault = 0; fault < AGV_FAULT_COUNT; fault++) {
-        const bool may = may_be_a_warning(fault);
+        const bool may = !FAULT_ROW[fault].trip || ((FAULT_ROW[fault].flags & AGV_FAULT_FLAG_FIXED) == 0);
         const char *const name = agv_fault_name((agv_fault_t)fault);
         setUp();
         TEST_ASSERT_TRUE_MESSAGE(may || agv_config_is_trip(&config, fault), name);
