@@ -64,7 +64,7 @@ static const char *company(const setting_expected_t *row) {
     if (row->setting == AGV_SETTING_reset_hold_max_ms) {
         return "reset_hold_ms: 500\n";
     }
-    return (row->scope == GATEWAY) ? "topology: gateway\n" : "";
+    return (row->scope == GATEWAY_ONLY) ? "topology: gateway\n" : "";
 }
 
 static const char *name_of(const setting_expected_t *row) {

@@ -72,7 +72,7 @@ static bool is_awaited_while_engaged(const cause_t *cause) {
 
 /* The last frame comes at a time for which its deadline expires exactly in that millisecond. */
 static void send_last(const cause_t *row, uint32_t expires_ms) {
-    if (f.now_ms == expires_ms - row->count - 1) {
+    if (f.now_ms == expires_ms - cause_deadline_ms(row) - 1) {
         fixture_send_now(&f, row->message);
         f.traffic[row->message].muted = true;
     }

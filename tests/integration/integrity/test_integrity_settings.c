@@ -15,14 +15,15 @@ static void slow_down(unsigned message, uint32_t cycle_ms) {
 }
 
 static void check_last_millisecond(const cause_t *cause) {
+    const uint32_t deadline_ms = cause_deadline_ms(cause);
     fixture_init(&f);
     f.what = agv_fault_name(cause->fault);
     fixture_active(&f);
-    slow_down(cause->message, cause->count + 1);
+    slow_down(cause->message, deadline_ms + 1);
     expect_nothing_after(&f, 3000, cause->fault, AGV_STATE_ACTIVE);
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, fixture_raised(&f, cause->fault), f.what);
-    slow_down(cause->message, cause->count + 2);
-    expect_nothing_after(&f, cause->count, cause->fault, AGV_STATE_ACTIVE);
+    slow_down(cause->message, deadline_ms + 2);
+    expect_nothing_after(&f, deadline_ms, cause->fault, AGV_STATE_ACTIVE);
     expect_fault_after(&f, 1, cause->fault, true);
 }
 

@@ -49,7 +49,7 @@ static void set_alone(uint16_t setting, uint16_t value) {
 
 static void expect_in_range(const setting_expected_t *row, uint16_t value, bool is_good) {
     set_alone(row->setting, value);
-    if (row->scope == GATEWAY) {
+    if (row->scope == GATEWAY_ONLY) {
         config.topology = AGV_TOPOLOGY_GATEWAY;
     }
     const agv_config_verdict_t verdict = agv_config_check(&config);
@@ -166,7 +166,7 @@ void test_settings_without_effect_on_a_shared_bus_are_refused(void) {
     for (uint16_t i = 0; i < SETTINGS_EXPECTED; i++) {
         const setting_expected_t *const row = &SETTING_EXPECTED[i];
         set_alone(i, (row->preset == row->highest) ? row->lowest : row->highest);
-        if (row->scope == GATEWAY) {
+        if (row->scope == GATEWAY_ONLY) {
             expect_problem(AGV_CONFIG_NEEDS_GATEWAY, i);
             config.topology = AGV_TOPOLOGY_GATEWAY;
         }

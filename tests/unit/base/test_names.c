@@ -106,7 +106,7 @@ void test_every_setting_is_described(void) {
         TEST_ASSERT_EQUAL_UINT16_MESSAGE(SETTING_EXPECTED[i].preset, info->preset, info->name);
         TEST_ASSERT_EQUAL_UINT16_MESSAGE(SETTING_EXPECTED[i].lowest, info->lowest, info->name);
         TEST_ASSERT_EQUAL_UINT16_MESSAGE(SETTING_EXPECTED[i].highest, info->highest, info->name);
-        TEST_ASSERT_EQUAL_MESSAGE(SETTING_EXPECTED[i].scope == GATEWAY, info->gateway_only, info->name);
+        TEST_ASSERT_EQUAL_MESSAGE(SETTING_EXPECTED[i].scope == GATEWAY_ONLY, info->gateway_only, info->name);
         TEST_ASSERT_EQUAL_MESSAGE(i < SETTINGS_EXPECTED_CHOICES, info->words != NULL, info->name);
         if (info->words != NULL) {
             TEST_ASSERT_NOT_NULL(strchr(info->words, '|'));

@@ -79,15 +79,16 @@ static bool is_heartbeat(const cause_t *cause) {
 
 /* With each silence of the table. In manual, that of the AI computer counts once it was alive. */
 static void check_silence(const cause_t *cause) {
+    const uint32_t deadline_ms = cause_deadline_ms(cause);
     setUp();
-    be_silent(cause->message, cause->count);
+    be_silent(cause->message, deadline_ms);
     expect_only((cause->how == BY_SILENCE) || is_heartbeat(cause) ? cause->fault : (unsigned)NONE);
     setUp();
     engaged = true;
-    be_silent(cause->message, cause->count);
+    be_silent(cause->message, deadline_ms);
     expect_only(cause->fault);
-    arrives(cause->message, 4, cause->count + 2);
-    tick(cause->count + 2);
+    arrives(cause->message, 4, deadline_ms + 2);
+    tick(deadline_ms + 2);
     expect_only(NONE);
 }
 
@@ -102,17 +103,18 @@ void test_the_fault_of_each_silence(void) {
 
 /* The last frame with the old counter came just before. */
 static void check_freeze(const cause_t *cause) {
+    const uint32_t deadline_ms = cause_deadline_ms(cause);
     setUp();
     others_arrive(NONE, 1, 0);
     others_arrive(NONE, 2, 0);
-    others_arrive(cause->message, 3, cause->count);
-    arrives(cause->message, 2, cause->count);
-    tick(cause->count);
+    others_arrive(cause->message, 3, deadline_ms);
+    arrives(cause->message, 2, deadline_ms);
+    tick(deadline_ms);
     expect_only(NONE);
-    tick(cause->count + 1);
+    tick(deadline_ms + 1);
     expect_only(cause->fault);
-    arrives(cause->message, 3, cause->count + 2);
-    tick(cause->count + 2);
+    arrives(cause->message, 3, deadline_ms + 2);
+    tick(deadline_ms + 2);
     expect_only(NONE);
 }
 
