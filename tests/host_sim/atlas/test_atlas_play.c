@@ -54,5 +54,8 @@ void test_init_stays_init(void) {
     const atlas_outcome_t *outcome = outcome_of((atlas_case_t){.first = campaign_row(AGV_FAULT_VCU_HEARTBEAT_LOST),
                                                                .second = campaign_row(AGV_FAULT_EPS_HEARTBEAT_LOST),
                                                                .state = ATLAS_INIT});
+    TEST_ASSERT_EQUAL(-1, outcome->reason);
+    TEST_ASSERT_EQUAL(AGV_STATE_INIT, outcome->state);
     TEST_ASSERT_EQUAL(0, outcome->open_us);
+    TEST_ASSERT_LESS_THAN_INT32(100000, outcome->safe_us); /* they go on, 168h every 100 ms */
 }

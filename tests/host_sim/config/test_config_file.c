@@ -8,6 +8,7 @@
 #include "agv/names.h"
 #include "config/config_options.h"
 #include "scratch.h"
+#include "settings_expected.h"
 #include "unity.h"
 
 static agv_config_t config;
@@ -56,30 +57,31 @@ void test_a_file_that_says_nothing(void) {
 }
 
 /* What a setting needs beside it. */
-static const char *company(const agv_setting_info_t *info) {
-    if (strcmp(info->name, "reset_hold_ms") == 0) {
+static const char *company(const setting_expected_t *row) {
+    if (row->setting == AGV_SETTING_reset_hold_ms) {
         return "reset_hold_max_ms: 30000\n";
     }
-    if (strcmp(info->name, "reset_hold_max_ms") == 0) {
+    if (row->setting == AGV_SETTING_reset_hold_max_ms) {
         return "reset_hold_ms: 500\n";
     }
-    return info->gateway_only ? "topology: gateway\n" : "";
+    return (row->scope == GATEWAY_ONLY) ? "topology: gateway\n" : "";
+}
+
+static const char *name_of(const setting_expected_t *row) {
+    return agv_setting_info(row->setting)->name;
 }
 
 /* Shows: INT-2 */
 void test_every_setting_is_read_by_its_name_up_to_its_limits(void) {
-    for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
-        const agv_setting_info_t *info = agv_setting_info(i);
-        if (info->words != NULL) {
-            continue;
-        }
-        const uint16_t values[] = {info->lowest, info->highest};
+    for (uint16_t i = SETTINGS_EXPECTED_CHOICES; i < SETTINGS_EXPECTED; i++) {
+        const setting_expected_t *row = &SETTING_EXPECTED[i];
+        const uint16_t values[] = {row->lowest, row->highest};
         for (size_t v = 0; v < 2; v++) {
             char text[128];
-            (void)snprintf(text, sizeof text, "%s%s: %u\n", company(info), info->name, values[v]);
+            (void)snprintf(text, sizeof text, "%s%s: %u\n", company(row), name_of(row), values[v]);
             load_good(text);
             TEST_ASSERT_EQUAL_UINT16_MESSAGE(values[v], agv_config_get(&config, i), text);
-            (void)agv_config_set(&config, i, info->preset);
+            (void)agv_config_set(&config, i, row->preset);
             config.reset_hold_ms = defaults.reset_hold_ms;
             config.reset_hold_max_ms = defaults.reset_hold_max_ms;
             config.topology = defaults.topology;
@@ -88,26 +90,24 @@ void test_every_setting_is_read_by_its_name_up_to_its_limits(void) {
     }
 }
 
+static void load_beyond(const setting_expected_t *row, unsigned value) {
+    const bool is_id = (row->setting >= AGV_SETTING_ID) || (row->setting == AGV_SETTING_status_frame_id);
+    char text[128];
+    char expected[128];
+    (void)snprintf(text, sizeof text, "\n%s: %u\n", name_of(row), value);
+    (void)snprintf(expected, sizeof expected,
+                   is_id ? "c.yaml:2: %s: %u is not within %03Xh to %03Xh" : "c.yaml:2: %s: %u is not within %u to %u",
+                   name_of(row), value, row->lowest, row->highest);
+    load_bad(text, expected);
+}
+
 /* Shows: INT-2 */
 void test_every_setting_is_refused_beyond_its_limits(void) {
-    for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
-        const agv_setting_info_t *info = agv_setting_info(i);
-        if (info->words != NULL) {
-            continue;
-        }
-        char text[128];
-        char expected[128];
-        (void)snprintf(text, sizeof text, "\n%s: %u\n", info->name, info->highest + 1);
-        const bool is_id = (strncmp(info->name, "id_", 3) == 0) || (strcmp(info->name, "status_frame_id") == 0);
-        (void)snprintf(expected, sizeof expected,
-                       is_id ? "c.yaml:2: %s: %u is not within %03Xh to %03Xh"
-                             : "c.yaml:2: %s: %u is not within %u to %u",
-                       info->name, info->highest + 1, info->lowest, info->highest);
-        load_bad(text, expected);
-        if (info->lowest > 0) {
-            (void)snprintf(text, sizeof text, "%s: %u\n", info->name, info->lowest - 1);
-            (void)snprintf(expected, sizeof expected, "c.yaml:1: %s: %u is not within", info->name, info->lowest - 1);
-            load_bad(text, expected);
+    for (uint16_t i = SETTINGS_EXPECTED_CHOICES; i < SETTINGS_EXPECTED; i++) {
+        const setting_expected_t *row = &SETTING_EXPECTED[i];
+        load_beyond(row, row->highest + 1u);
+        if (row->lowest > 0) {
+            load_beyond(row, row->lowest - 1u);
         }
     }
 }

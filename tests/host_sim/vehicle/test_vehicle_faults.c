@@ -32,14 +32,16 @@ void test_nodes_start_when_they_are_told(void) {
     TEST_ASSERT_TRUE(look().running[VEHICLE_AI]);
 }
 
+/* 363h would bring a running EPS to angle control. */
 void test_a_node_that_stops_neither_sends_nor_hears(void) {
     run_until(100);
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_STOP, .node = VEHICLE_VCU});
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_STOP, .node = VEHICLE_EPS});
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_ENGAGE});
     const size_t first = sent_count;
-    command(AGV_MSG_GEAR_COMMAND, AGV_GEAR_P, 0);
-    expect_sent_at(200, VEHICLE_VCU, first, 0);
-    TEST_ASSERT_GREATER_THAN_size_t(0, count_from(VEHICLE_EPS, first));
-    TEST_ASSERT_FALSE(look().running[VEHICLE_VCU]);
+    expect_sent_at(500, VEHICLE_EPS, first, 0);
+    TEST_ASSERT_EQUAL_HEX8(0x80, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
+    TEST_ASSERT_FALSE(look().running[VEHICLE_EPS]);
+    TEST_ASSERT_EQUAL(AGV_EPS_MODE_ASSIST, look().eps_mode);
 }
 
 void test_a_restarted_vcu_begins_anew(void) {
@@ -162,20 +164,52 @@ void test_several_fields_of_a_message_keep_values_each_for_its_own_time(void) {
     expect_vehicle_status(60, 0x00u, 0x00u);
 }
 
-void test_recovery_ends_every_misbehaviour_of_a_node(void) {
-    run_until(100);
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_FREEZE, .node = VEHICLE_EPS});
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_LAG, .node = VEHICLE_EPS, .ms = 50});
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_REPEAT, .node = VEHICLE_EPS, .count = 5});
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_MUTE, .message = AGV_MSG_EPS_STATUS, .count = VEHICLE_FOREVER});
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_EPS_STUCK, .on = true});
-    run_until(200);
-    (void)act((vehicle_action_t){.what = VEHICLE_DO_RECOVER, .node = VEHICLE_EPS});
-    run_until(300);
+/* ---- Recovery ---- */
+
+static const struct {
+    const char *what;
+    vehicle_action_t action;
+} MISBEHAVIOURS[] = {
+    {"frozen", {.what = VEHICLE_DO_FREEZE, .node = VEHICLE_EPS}},
+    {"lag", {.what = VEHICLE_DO_LAG, .node = VEHICLE_EPS, .ms = 10}},
+    {"repeat", {.what = VEHICLE_DO_REPEAT, .node = VEHICLE_EPS, .count = 1}},
+    {"garbage", {.what = VEHICLE_DO_GARBAGE, .node = VEHICLE_EPS, .garbage = VEHICLE_GARBAGE_REMOTE}},
+    {"mute", {.what = VEHICLE_DO_MUTE, .message = AGV_MSG_EPS_STATUS, .count = VEHICLE_FOREVER}},
+    {"period", {.what = VEHICLE_DO_PERIOD, .message = AGV_MSG_EPS_STATUS, .ms = 20}},
+    {"patch", {.what = VEHICLE_DO_PATCH, .message = AGV_MSG_STEERING_STATUS, .count = VEHICLE_FOREVER}},
+    {"hold", {.what = VEHICLE_DO_HOLD, .message = AGV_MSG_STEERING_STATUS, .count = VEHICLE_FOREVER}},
+    {"delay", {.what = VEHICLE_DO_DELAY, .message = AGV_MSG_STEERING_STATUS, .ms = 100}},
+    {"ignore", {.what = VEHICLE_DO_IGNORE, .message = AGV_MSG_STEERING_COMMAND, .on = true}},
+    {"stuck", {.what = VEHICLE_DO_EPS_STUCK, .on = true}},
+    {"hunt", {.what = VEHICLE_DO_EPS_HUNT, .angle_ddeg = 100, .ms = 130}},
+};
+
+/* The AI computer turns the steering by up to 60.0 degrees: 200 ms, and up to 25 ms until its next 065h. In the last
+ * 100 ms of 250 the EPS sends each of its messages ten times, whole, with a counter that runs, and then the new angle. */
+static bool eps_obeys(int32_t angle_ddeg) {
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_N, .angle_ddeg = angle_ddeg});
+    run_until(now_ms + 150);
     const size_t first = sent_count;
-    const uint8_t before = last_of(AGV_MSG_STEERING_STATUS)->frame.data[0];
-    expect_sent_at(400, VEHICLE_EPS, first, 30);
-    TEST_ASSERT_EQUAL_UINT8(before + 10, last_of(AGV_MSG_STEERING_STATUS)->frame.data[0]);
+    const uint8_t counter = last_of(AGV_MSG_STEERING_STATUS)->frame.data[0];
+    run_until(now_ms + 100);
+    const hal_can_frame_t *last = &last_of(AGV_MSG_STEERING_STATUS)->frame;
+    return (count_of(AGV_MSG_STEERING_STATUS, first) == 10) && (count_of(AGV_MSG_EPS_STATUS, first) == 10) &&
+           (count_of(AGV_MSG_STEERING_POSITION, first) == 10) && (last->flags == 0) && (last->length == AGV_DLC) &&
+           (last->data[0] == (uint8_t)(counter + 10)) && (measured_ddeg() == angle_ddeg);
+}
+
+void test_recovery_ends_every_misbehaviour_of_a_node(void) {
+    for (size_t i = 0; i < sizeof MISBEHAVIOURS / sizeof MISBEHAVIOURS[0]; i++) {
+        begin();
+        run_until(10);
+        (void)act((vehicle_action_t){.what = VEHICLE_DO_ENGAGE});
+        run_until(1000);
+        TEST_ASSERT_TRUE_MESSAGE(eps_obeys(0), MISBEHAVIOURS[i].what);
+        TEST_ASSERT_TRUE_MESSAGE(act(MISBEHAVIOURS[i].action), MISBEHAVIOURS[i].what);
+        TEST_ASSERT_FALSE_MESSAGE(eps_obeys(600), MISBEHAVIOURS[i].what);
+        (void)act((vehicle_action_t){.what = VEHICLE_DO_RECOVER, .node = VEHICLE_EPS});
+        TEST_ASSERT_TRUE_MESSAGE(eps_obeys(300), MISBEHAVIOURS[i].what);
+    }
 }
 
 void test_a_stranger_sends_once_or_again_and_again(void) {

@@ -36,11 +36,6 @@ static void expect_mode_at(uint64_t t_ms, uint8_t byte) {
     expect_byte_at(t_ms, AGV_MSG_VEHICLE_STATUS, 6, byte);
 }
 
-static int32_t measured_ddeg(void) {
-    const uint8_t *data = last_of(AGV_MSG_STEERING_STATUS)->frame.data;
-    return data[2] + (data[3] * 256) - 9000;
-}
-
 /* Frames of a message since `first` whose byte is not this. */
 static size_t count_other(agv_message_t message, unsigned byte, uint8_t value, size_t first) {
     size_t count = 0;

@@ -108,6 +108,12 @@ static const sent_t *last_of(agv_message_t message) {
     return NULL;
 }
 
+/* What the newest 067h says. */
+static inline int32_t measured_ddeg(void) {
+    const uint8_t *data = last_of(AGV_MSG_STEERING_STATUS)->frame.data;
+    return data[2] + (data[3] * 256) - 9000;
+}
+
 /* What is expected at a moment. */
 static inline void expect_gear_at(uint64_t t_ms, uint8_t gear) {
     run_until(t_ms);

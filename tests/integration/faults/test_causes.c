@@ -46,7 +46,7 @@ static void raise(const cause_t *cause, agv_state_t state) {
     if (is_by_bits(cause)) {
         fixture_run_before(&f, cause->message);
     } else {
-        fixture_run(&f, cause->count);
+        fixture_run(&f, cause_deadline_ms(cause));
     }
     expect_nothing(&f, cause->fault, state);
     fixture_run(&f, 1);
@@ -158,7 +158,7 @@ static void check_silence(const cause_t *cause) {
     begin_case(cause, "never heard");
     cause_set(f.traffic, cause, true);
     fixture_start(&f);
-    expect_nothing_after(&f, cause->count, cause->fault, AGV_STATE_INIT);
+    expect_nothing_after(&f, cause_deadline_ms(cause), cause->fault, AGV_STATE_INIT);
     expect_fault_after(&f, 1, cause->fault, true);
     expect_led(&f, led_of(cause));
     expect_reason_after(&f, 2000, AGV_FAULT_NONE);
@@ -197,7 +197,7 @@ static void check_afresh(const cause_t *cause) {
     fixture_wheels(&f, 800, 800);
     walk_engage(&f);
     expect_state(&f, AGV_STATE_ACTIVE);
-    expect_nothing_after(&f, cause->count, cause->fault, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, cause_deadline_ms(cause), cause->fault, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_trip(&f, cause->fault, f.call, ANGLE_CENTRE);
     expect_led(&f, led_of(cause));

@@ -317,7 +317,7 @@ void test_an_overrun_before_a_corruption_is_not_raised_again(void) {
         sim_hal_add_overrun(&f.hal, (hal_can_side_t)side);
         expect_fault_after(&f, 1, AGV_FAULT_RX_OVERRUN, true);
         expect_fault_after(&f, 1000, AGV_FAULT_RX_OVERRUN, false);
-        ((uint8_t *)&f.supervisor)[sizeof f.supervisor / 2] ^= 0x01u;
+        fixture_flip_bit(&f, 1000);
         expect_tripped_after(&f, 1, AGV_FAULT_MEMORY_CORRUPTED);
         expect_fault_after(&f, 10, AGV_FAULT_RX_OVERRUN, false);
         TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_RX_OVERRUN));

@@ -65,10 +65,6 @@ void test_store_invalid(void) {
 
 /* ---- MEMORY_CORRUPTED ---- */
 
-static void flip(size_t bit) {
-    ((uint8_t *)&f.supervisor)[bit / 8] ^= (uint8_t)(1u << (bit % 8));
-}
-
 /* Shows: INT-5, FSM-2, FSM-9, MEMORY_CORRUPTED */
 void test_memory_corrupted(void) {
     fixture_active(&f);
@@ -76,7 +72,7 @@ void test_memory_corrupted(void) {
     fixture_mute_vcu(&f, true);
     fixture_mute_eps(&f, true);
     fixture_mute_ai(&f, true);
-    flip(1000);
+    fixture_flip_bit(&f, 1000);
     fixture_run(&f, 1);
     expect_own_trip(AGV_FAULT_MEMORY_CORRUPTED);
 }
@@ -88,7 +84,7 @@ void test_memory_corrupted_before_the_receive_path_checks_in(void) {
     fixture_mute_vcu(&f, true);
     fixture_mute_eps(&f, true);
     fixture_mute_ai(&f, true);
-    flip(1000);
+    fixture_flip_bit(&f, 1000);
     expect_tripped_after(&f, 1, AGV_FAULT_MEMORY_CORRUPTED);
 }
 
@@ -96,7 +92,7 @@ void test_memory_corrupted_before_the_receive_path_checks_in(void) {
 /* Shows: INT-5, FSM-2, MEMORY_CORRUPTED */
 void test_memory_corrupted_is_found_by_a_frame(void) {
     fixture_active(&f);
-    flip(77);
+    fixture_flip_bit(&f, 77);
     fixture_send_now(&f, AGV_MSG_WHEEL_SPEED);
     expect_tripped(&f, AGV_FAULT_MEMORY_CORRUPTED);
     expect_safe_commands(&f, f.call, NO_HOLD);
@@ -109,7 +105,7 @@ static void flip_every_bit(void) {
     for (size_t bit = 0; bit < bits; bit++) {
         f.supervisor = healthy;
         sim_store_init(&f.store);
-        flip(bit);
+        fixture_flip_bit(&f, bit);
         fixture_forget_sent(&f);
         agv_supervisor_tick(&f.supervisor, &f.ports, f.now_ms);
         expect_tripped(&f, AGV_FAULT_MEMORY_CORRUPTED);

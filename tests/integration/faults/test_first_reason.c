@@ -62,7 +62,7 @@ void test_a_warning_is_never_the_reason(void) {
 /* ---- Two deadlines in one tick ---- */
 
 static bool is_trip_by_silence(const cause_t *cause) {
-    return FAULT_ROW[cause->fault].trip && (cause->how == BY_SILENCE || cause->how == BY_SILENCE_ENGAGED);
+    return FAULT_ROW[cause->fault].trip && cause_is_silence(cause);
 }
 
 /* A command is awaited while engaged only, the heartbeat of the AI computer also in manual. */
@@ -72,7 +72,7 @@ static bool is_awaited_while_engaged(const cause_t *cause) {
 
 /* The last frame comes at a time for which its deadline expires exactly in that millisecond. */
 static void send_last(const cause_t *row, uint32_t expires_ms) {
-    if (f.now_ms == expires_ms - row->count - 1) {
+    if (f.now_ms == expires_ms - cause_deadline_ms(row) - 1) {
         fixture_send_now(&f, row->message);
         f.traffic[row->message].muted = true;
     }

@@ -110,8 +110,7 @@ void test_leaving_p_or_engaging_withdraws_the_confirmation_in_that_frame(void) {
         fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
         expect_state(&f, AGV_STATE_SAFE);
     }
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_report(&f, MODE_ENGAGED);
     expect_state(&f, AGV_STATE_TRIPPED);
     fixture_mode(&f, MODE_MANUAL);
     for (unsigned i = 0; i < 3; i++) {

@@ -135,8 +135,7 @@ void test_a_trip_in_manual_driving_holds_nothing(void) {
 void test_manual_after_the_trip_drops_the_held_angle(void) {
     trip_at(9123);
     fixture_run(&f, 100);
-    fixture_mode(&f, MODE_MANUAL);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_report(&f, MODE_MANUAL);
     expect_not_held_for_a_second();
     fixture_mode(&f, MODE_ENGAGED);
     fixture_angle(&f, 18001);
@@ -172,8 +171,7 @@ void test_manual_withdraws_an_angle_that_waits_in_a_stalled_transmitter(void) {
         stall(PENDING_MS[stalled]);
         fixture_run(&f, 98);
         const uint32_t purged = purges();
-        fixture_mode(&f, MODE_MANUAL);
-        fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+        walk_report(&f, MODE_MANUAL);
         fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
         TEST_ASSERT_EQUAL_UINT32(purged + stalled, purges());
     }
@@ -189,8 +187,7 @@ void test_a_status_frame_that_is_withdrawn_with_the_angle_is_sent_again(void) {
         fixture_run(&f, 1);
     }
     const uint32_t purged = purges();
-    fixture_mode(&f, MODE_MANUAL);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_report(&f, MODE_MANUAL);
     TEST_ASSERT_EQUAL_UINT32(purged + 1, purges());
     fixture_run(&f, 1);
     TEST_ASSERT_EQUAL_UINT32(before + 2, f.status_count);

@@ -26,7 +26,7 @@ static void start_with_invalid_config(void) {
 
 static void corrupt_memory(void) {
     fixture_active(&f);
-    ((uint8_t *)&f.supervisor)[sizeof f.supervisor / 2] ^= 0x01u;
+    fixture_flip_bit(&f, 1000);
     fixture_send_now(&f, AGV_MSG_WHEEL_SPEED);
 }
 
@@ -43,8 +43,7 @@ static void expect_cannot_be_reset(agv_fault_t fault) {
     expect_state(&f, AGV_STATE_SAFE);
     expect_reason(&f, fault);
     expect_output(&f, false);
-    TEST_ASSERT_EQUAL_UINT32(refusals + 1, walk_refusals(&f, &missing));
-    TEST_ASSERT_EQUAL_HEX16(AGV_MISSING_TRIP_CAUSE, missing);
+    expect_refusals(&f, refusals + 1, AGV_MISSING_TRIP_CAUSE);
 }
 
 /* Shows: FSM-9, FSM-7, INT-2, INT-5, SELF_TEST_FAILED, CONFIG_INVALID, MEMORY_CORRUPTED */
@@ -75,7 +74,7 @@ void test_an_unresettable_fault_outlives_every_reset_but_a_power_on(void) {
 /* Shows: FSM-5, FSM-9, MEMORY_CORRUPTED */
 void test_corrupted_memory_keeps_the_reason_of_an_earlier_trip(void) {
     walk_to_safe(&f);
-    ((uint8_t *)&f.supervisor)[sizeof f.supervisor / 2] ^= 0x01u;
+    fixture_flip_bit(&f, 1000);
     fixture_send_now(&f, AGV_MSG_WHEEL_SPEED);
     expect_fault(&f, AGV_FAULT_MEMORY_CORRUPTED, true);
     expect_cannot_be_reset(AGV_FAULT_S_DRIVER_ALARM);
@@ -102,7 +101,7 @@ static void expect_after_a_flipped_bit(void (*expect_kept)(const agv_config_t *c
     const size_t at = (size_t)((const uint8_t *)agv_supervisor_config(&f.supervisor) - (const uint8_t *)&f.supervisor);
     for (size_t bit = 0; bit < 8 * sizeof(agv_config_t); bit++) {
         f.supervisor = intact;
-        ((uint8_t *)&f.supervisor)[at + bit / 8] ^= (uint8_t)(1u << (bit % 8));
+        fixture_flip_bit(&f, 8 * at + bit);
         fixture_send_now(&f, AGV_MSG_WHEEL_SPEED);
         expect_fault(&f, AGV_FAULT_MEMORY_CORRUPTED, true);
         expect_kept(agv_supervisor_config(&f.supervisor));

@@ -10,12 +10,6 @@ static void hold_for(uint32_t ms) {
     walk_button(&f, false);
 }
 
-static void expect_refusals(uint32_t count, uint16_t expected) {
-    uint16_t missing = 0;
-    TEST_ASSERT_EQUAL_UINT32_MESSAGE(count, walk_refusals(&f, &missing), f.what);
-    TEST_ASSERT_EQUAL_HEX16_MESSAGE(expected, missing, f.what);
-}
-
 /* Shows: FSM-3, FSM-4, FSM-5 */
 void test_a_press_of_1_s_with_all_conditions_resets_at_its_release(void) {
     agv_event_t event = {0};
@@ -74,16 +68,16 @@ void test_each_missing_condition_refuses_and_is_named_once_a_press(void) {
         begin(&CONDITIONS[i]);
         walk_button(&f, true);
         fixture_run(&f, 1500);
-        expect_refusals(0, 0);
+        expect_refusals(&f, 0, 0);
         walk_button(&f, false);
-        expect_refusals(1, missing);
+        expect_refusals(&f, 1, missing);
         fixture_run(&f, 30);
         walk_button(&f, true);
         fixture_run(&f, 5001);
-        expect_refusals(2, missing | AGV_MISSING_RELEASED);
+        expect_refusals(&f, 2, missing | AGV_MISSING_RELEASED);
         fixture_run(&f, 1000);
         walk_button(&f, false);
-        expect_refusals(2, missing | AGV_MISSING_RELEASED);
+        expect_refusals(&f, 2, missing | AGV_MISSING_RELEASED);
         expect_state(&f, CONDITIONS[i].state);
     }
 }
@@ -95,7 +89,7 @@ void test_the_conditions_must_hold_in_the_releasing_frame_too(void) {
     fixture_run(&f, 1500);
     fixture_mode(&f, MODE_BOTH); /* manual stays valid, but both bits confirm nothing */
     walk_button(&f, false);
-    expect_refusals(1, AGV_MISSING_STATE);
+    expect_refusals(&f, 1, AGV_MISSING_STATE);
     expect_state(&f, AGV_STATE_TRIPPED);
 }
 
@@ -117,7 +111,7 @@ static void release_with_old_067h(uint32_t last_ms) {
 void test_a_deadline_that_expires_in_the_last_tick(void) {
     release_with_old_067h(949);
     expect_fault(&f, AGV_FAULT_EPS_HEARTBEAT_LOST, true);
-    expect_refusals(1, AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_TRIP_CAUSE);
+    expect_refusals(&f, 1, AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_TRIP_CAUSE);
     release_with_old_067h(950);
     expect_state(&f, AGV_STATE_STANDBY);
 }
@@ -163,11 +157,11 @@ void test_the_loss_of_the_vcu_ends_a_press(void) {
     fixture_run(&f, 1200);
     f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true;
     expect_state_after(&f, 100, AGV_STATE_TRIPPED);
-    expect_refusals(1, AGV_MISSING_VCU_HEARTBEAT);
+    expect_refusals(&f, 1, AGV_MISSING_VCU_HEARTBEAT);
     f.traffic[AGV_MSG_VEHICLE_STATUS].muted = false;
     expect_state_after(&f, 1500, AGV_STATE_SAFE);
     walk_button(&f, false);
-    expect_refusals(2, AGV_MISSING_BUTTON); /* it was pressed before the VCU came back */
+    expect_refusals(&f, 2, AGV_MISSING_BUTTON); /* it was pressed before the VCU came back */
     expect_state(&f, AGV_STATE_SAFE);
     walk_reset(&f, 1000);
 }
@@ -178,13 +172,13 @@ void test_the_button_of_a_vcu_that_is_not_alive_does_not_count(void) {
     f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = true;
     expect_state_after(&f, 100, AGV_STATE_TRIPPED);
     hold_for(1500);
-    expect_refusals(0, 0);
+    expect_refusals(&f, 0, 0);
     walk_button(&f, true);
     fixture_run(&f, 1500);
     f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = false;
     fixture_run(&f, 1500);
     walk_button(&f, false);
-    expect_refusals(1, AGV_MISSING_BUTTON);
+    expect_refusals(&f, 1, AGV_MISSING_BUTTON);
     expect_state(&f, AGV_STATE_SAFE);
 }
 
@@ -197,7 +191,7 @@ void test_a_throttle_status_whose_silence_only_warns_is_needed_too(void) {
     fixture_run(&f, 100);
     hold_for(1500);
     expect_state(&f, AGV_STATE_SAFE);
-    expect_refusals(1, AGV_MISSING_THROTTLE);
+    expect_refusals(&f, 1, AGV_MISSING_THROTTLE);
     f.traffic[AGV_MSG_THROTTLE_STATUS].muted = false;
     fixture_run(&f, 100);
     walk_reset(&f, 1100);
@@ -224,12 +218,12 @@ void test_a_receiver_that_is_lost_and_comes_back_is_neither_release_nor_press(vo
     for (unsigned i = 0; i < 2; i++) {
         lose_the_receiver(ALARMS[i]);
         expect_state(&f, AGV_STATE_SAFE);
-        expect_refusals(1, AGV_MISSING_BUTTON);
+        expect_refusals(&f, 1, AGV_MISSING_BUTTON);
         fixture_run(&f, 200);
         walk_alarm(&f, ALARM_NONE);
         hold_for(1500);
         expect_state(&f, AGV_STATE_SAFE);
-        expect_refusals(2, AGV_MISSING_BUTTON);
+        expect_refusals(&f, 2, AGV_MISSING_BUTTON);
         walk_reset(&f, 1000);
     }
 }
@@ -241,7 +235,7 @@ void test_button_2_resets_nothing(void) {
     fixture_run(&f, 2000);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[6] = 0x40;
     expect_state_after(&f, 1000, AGV_STATE_SAFE);
-    expect_refusals(0, 0);
+    expect_refusals(&f, 0, 0);
 }
 
 /* Shows: FSM-3 */
@@ -254,7 +248,7 @@ void test_a_press_outside_the_latch_is_no_event(void) {
     fixture_run(&f, 3000);
     walk_button(&f, false);
     expect_state_after(&f, 100, AGV_STATE_ACTIVE);
-    expect_refusals(0, 0);
+    expect_refusals(&f, 0, 0);
 }
 
 /* ---- The AI computer does not prevent a reset ---- */

@@ -21,8 +21,7 @@ void test_a_reset_forgets_the_ai_computer_at_once(void) {
     fixture_mute_ai(&f, true);
     fixture_run(&f, 500);
     expect_reset_in_a_frame(AGV_FAULT_AI_HEARTBEAT_LOST);
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_report(&f, MODE_ENGAGED);
     expect_tripped(&f, AGV_FAULT_AI_HEARTBEAT_LOST);
     fixture_init(&f);
     fixture_active(&f);

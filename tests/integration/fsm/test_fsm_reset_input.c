@@ -21,12 +21,6 @@ static void push_for(uint32_t ms) {
     fixture_run(&f, 21);
 }
 
-static void expect_refusals(uint32_t count, uint16_t expected) {
-    uint16_t missing = 0;
-    TEST_ASSERT_EQUAL_UINT32(count, walk_refusals(&f, &missing));
-    TEST_ASSERT_EQUAL_HEX16(expected, missing);
-}
-
 /* The debounced button follows 20 ms after press and release, so the press lasts as long as that of the finger. */
 /* Shows: HW-3 */
 void test_with_pin_the_push_button_resets_and_the_remote_button_does_not(void) {
@@ -35,7 +29,7 @@ void test_with_pin_the_push_button_resets_and_the_remote_button_does_not(void) {
     fixture_run(&f, 1500);
     walk_button(&f, false);
     expect_state(&f, AGV_STATE_SAFE);
-    expect_refusals(0, 0);
+    expect_refusals(&f, 0, 0);
     push(true);
     fixture_run(&f, 1000);
     push(false);
@@ -48,7 +42,7 @@ void test_with_can_the_push_button_resets_nothing(void) {
     choose(AGV_RESET_INPUT_CAN);
     push_for(1500);
     expect_state(&f, AGV_STATE_SAFE);
-    expect_refusals(0, 0);
+    expect_refusals(&f, 0, 0);
     walk_reset(&f, 1000);
 }
 
@@ -72,7 +66,7 @@ void test_a_press_of_the_remote_button_after_a_reset_by_the_push_button(void) {
     walk_trip(&f);
     expect_state_after(&f, 1500, AGV_STATE_SAFE);
     walk_button(&f, false);
-    expect_refusals(1, AGV_MISSING_BUTTON);
+    expect_refusals(&f, 1, AGV_MISSING_BUTTON);
     expect_state(&f, AGV_STATE_SAFE);
 }
 
@@ -84,7 +78,7 @@ void test_a_press_of_the_push_button_in_vain_is_reported(void) {
     fixture_run(&f, 5100);
     push(false);
     expect_state_after(&f, 100, AGV_STATE_SAFE);
-    expect_refusals(1, AGV_MISSING_RELEASED);
+    expect_refusals(&f, 1, AGV_MISSING_RELEASED);
 }
 
 /* Also while the push button is not touched. */
@@ -95,7 +89,7 @@ void test_a_press_of_the_remote_button_in_vain_is_reported(void) {
     fixture_run(&f, 5100);
     walk_button(&f, false);
     expect_state_after(&f, 100, AGV_STATE_SAFE);
-    expect_refusals(1, AGV_MISSING_RELEASED);
+    expect_refusals(&f, 1, AGV_MISSING_RELEASED);
 }
 
 /* The remote button is down too long for a reset, from 5001 ms on. The push button resets whenever its own press ends: in the same
@@ -144,7 +138,7 @@ void test_a_push_button_that_was_down_at_the_trip_does_not_reset(void) {
     expect_state_after(&f, 2000, AGV_STATE_SAFE);
     push(false);
     expect_state_after(&f, 100, AGV_STATE_SAFE);
-    expect_refusals(1, AGV_MISSING_BUTTON);
+    expect_refusals(&f, 1, AGV_MISSING_BUTTON);
     push_for(1000);
     expect_state(&f, AGV_STATE_STANDBY);
     push(true); /* and once more, after a good press */
@@ -153,7 +147,7 @@ void test_a_push_button_that_was_down_at_the_trip_does_not_reset(void) {
     expect_state_after(&f, 2000, AGV_STATE_SAFE);
     push(false);
     expect_state_after(&f, 100, AGV_STATE_SAFE);
-    expect_refusals(2, AGV_MISSING_BUTTON);
+    expect_refusals(&f, 2, AGV_MISSING_BUTTON);
 }
 
 /* A press on which the VCU was lost says nothing about the vehicle that came back (FSM-3). */
@@ -164,12 +158,12 @@ void test_the_loss_of_the_vcu_ends_a_press_of_the_push_button(void) {
     fixture_run(&f, 1300);
     f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true;
     expect_state_after(&f, 100, AGV_STATE_TRIPPED);
-    expect_refusals(1, AGV_MISSING_VCU_HEARTBEAT);
+    expect_refusals(&f, 1, AGV_MISSING_VCU_HEARTBEAT);
     f.traffic[AGV_MSG_VEHICLE_STATUS].muted = false;
     expect_state_after(&f, 1500, AGV_STATE_SAFE);
     push(false);
     expect_state_after(&f, 100, AGV_STATE_SAFE);
-    expect_refusals(2, AGV_MISSING_BUTTON);
+    expect_refusals(&f, 2, AGV_MISSING_BUTTON);
     push_for(1000);
     expect_state(&f, AGV_STATE_STANDBY);
 }
@@ -182,7 +176,7 @@ void test_an_input_that_falls_silent_is_no_release(void) {
     f.hal.board.has_reset_button = false;
     fixture_run(&f, 100);
     expect_state(&f, AGV_STATE_SAFE);
-    expect_refusals(1, AGV_MISSING_BUTTON);
+    expect_refusals(&f, 1, AGV_MISSING_BUTTON);
     f.hal.board.has_reset_button = true;
     fixture_run(&f, 100);
     push(false);

@@ -11,19 +11,6 @@ void setUp(void) {
     f.long_run = true;
 }
 
-/* The operator resets; the vehicle is in manual then. */
-static void reset(void) {
-    fixture_vehicle_confirms(&f);
-    fixture_run(&f, 1500);
-    walk_reset(&f, 1000);
-}
-
-/* The 363h that begins an engagement, now. */
-static void engage(void) {
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-}
-
 /* 168h comes every 10 ms: gaps under half its cycle. As a trip it neither prevents the reset nor trips in manual. */
 static void babble(bool on) {
     f.traffic[AGV_MSG_GEAR_COMMAND].cycle_ms = on ? 10 : 100;
@@ -38,7 +25,7 @@ static void reset_while_the_ai_babbles(void) {
     babble(true);
     fixture_run(&f, 300);
     expect_tripped(&f, AGV_FAULT_COMMAND_TOO_FAST);
-    reset();
+    walk_confirm_and_reset(&f);
     expect_fault_after(&f, 5000, AGV_FAULT_COMMAND_TOO_FAST, true);
     expect_state(&f, AGV_STATE_STANDBY);
 }
@@ -46,7 +33,7 @@ static void reset_while_the_ai_babbles(void) {
 /* Shows: FSM-11, FSM-3, COMMAND_TOO_FAST */
 void test_a_cause_that_outlived_the_reset_trips_at_the_next_engagement(void) {
     reset_while_the_ai_babbles();
-    engage();
+    walk_report(&f, MODE_ENGAGED);
     expect_tripped(&f, AGV_FAULT_COMMAND_TOO_FAST);
 }
 
@@ -69,9 +56,9 @@ void test_a_transient_that_has_not_ended_trips_at_the_next_engagement(void) {
     fixture_active(&f);
     fixture_frame(&f, AGV_MSG_GEAR_COMMAND, no_gear);
     expect_tripped(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
-    reset();
+    walk_confirm_and_reset(&f);
     expect_fault(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, true);
-    engage();
+    walk_report(&f, MODE_ENGAGED);
     expect_tripped(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
 }
 
@@ -88,7 +75,7 @@ void test_an_engagement_soon_after_a_reset_does_not_continue_the_one_that_trippe
     fixture_vehicle_confirms(&f);
     walk_reset(&f, 700);
     expect_state(&f, AGV_STATE_STANDBY);
-    engage();
+    walk_report(&f, MODE_ENGAGED);
     expect_state_after(&f, 80, AGV_STATE_ACTIVE);
     expect_tripped_after(&f, 100, AGV_FAULT_STEERING_COMMAND_TIMEOUT);
 }

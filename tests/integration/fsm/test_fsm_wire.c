@@ -168,7 +168,7 @@ void test_commands_that_wait_in_the_controller_are_never_sent_in_manual(void) {
 /* Shows: FSM-2, INT-5, MEMORY_CORRUPTED */
 void test_after_memory_corruption_frames_that_wait_in_the_controller_are_never_sent(void) {
     ai_commands();
-    ((uint8_t *)&f.supervisor)[sizeof f.supervisor / 3] ^= 0x20u;
+    fixture_flip_bit(&f, 1000);
     fixture_send_now(&f, AGV_MSG_THROTTLE_STATUS);
     expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
     run(5);

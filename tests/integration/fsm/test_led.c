@@ -38,8 +38,7 @@ void test_a_trip_of_one_instant_is_shown(void) {
     expect_state_after(&f, 1000, AGV_STATE_SAFE);
     walk_reset(&f, 1050);
     expect_led_after(&f, 500, 14);
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_report(&f, MODE_ENGAGED);
     expect_tripped(&f, AGV_FAULT_AI_BUS_OFF);
     sim_hal_set_can_state(&f.hal, HAL_CAN_AI, HAL_CAN_ERROR_ACTIVE);
     fixture_jump(&f, 1); /* no frame in between */

@@ -93,9 +93,9 @@ static void check_no_command(const kind_t *kind, agv_message_t message, uint32_t
 static void check_all_kinds(const cause_t *cause) {
     for (unsigned i = 0; i < KIND_COUNT; i++) {
         if (cause->message < AGV_COMMAND_COUNT && is_data_frame(&KINDS[i])) {
-            check_no_command(&KINDS[i], cause->message, cause->count, cause->fault);
+            check_no_command(&KINDS[i], cause->message, cause_deadline_ms(cause), cause->fault);
         } else {
-            check(&KINDS[i], cause->message, cause->count, cause->fault);
+            check(&KINDS[i], cause->message, cause_deadline_ms(cause), cause->fault);
             expect_reason(&f, FAULT_ROW[cause->fault].trip ? cause->fault : AGV_FAULT_NONE);
         }
     }
@@ -107,7 +107,7 @@ static void check_all_kinds(const cause_t *cause) {
 void test_each_kind_of_each_message(void) {
     unsigned messages = 0;
     for (unsigned i = 0; i < CAUSES; i++) {
-        if (CAUSE[i].how == BY_SILENCE || CAUSE[i].how == BY_SILENCE_ENGAGED) {
+        if (cause_is_silence(&CAUSE[i])) {
             check_all_kinds(&CAUSE[i]);
             messages++;
         }

@@ -1,52 +1,39 @@
 /* Times and counts are settings. Each is set to a different value and checked to the millisecond. Also frames that come
  * in the last possible millisecond. test_timers has the settings of all timers. */
 #include "agv/names.h"
+#include "causes.h"
 #include "one_fixture.h"
 #include "walk.h"
 
 /* ---- Deadlines ---- */
 
-typedef struct {
-    agv_fault_t fault;
-    agv_message_t message;
-    uint32_t deadline_ms;
-} deadline_t;
-
-static const deadline_t DEADLINES[] = {
-    {AGV_FAULT_VCU_HEARTBEAT_LOST, AGV_MSG_VEHICLE_STATUS, 50},
-    {AGV_FAULT_EPS_HEARTBEAT_LOST, AGV_MSG_STEERING_STATUS, 50},
-    {AGV_FAULT_AI_HEARTBEAT_LOST, AGV_MSG_TURN_SIGNAL_COMMAND, 350},
-    {AGV_FAULT_EPS_STATUS_TIMEOUT, AGV_MSG_EPS_STATUS, 60},
-    {AGV_FAULT_GEAR_STATUS_TIMEOUT, AGV_MSG_GEAR_STATUS, 125},
-    {AGV_FAULT_THROTTLE_STATUS_TIMEOUT, AGV_MSG_THROTTLE_STATUS, 60},
-    {AGV_FAULT_WHEEL_SPEED_TIMEOUT, AGV_MSG_WHEEL_SPEED, 60},
-    {AGV_FAULT_STEERING_POSITION_TIMEOUT, AGV_MSG_STEERING_POSITION, 60},
-    {AGV_FAULT_GEAR_COMMAND_TIMEOUT, AGV_MSG_GEAR_COMMAND, 350},
-    {AGV_FAULT_THROTTLE_COMMAND_TIMEOUT, AGV_MSG_THROTTLE_COMMAND, 350},
-    {AGV_FAULT_STEERING_COMMAND_TIMEOUT, AGV_MSG_STEERING_COMMAND, 125},
-};
-enum { DEADLINE_COUNT = sizeof DEADLINES / sizeof DEADLINES[0] };
-
 /* From its next frame on the message has this cycle. */
-static void slow_down(agv_message_t message, uint32_t cycle_ms) {
+static void slow_down(unsigned message, uint32_t cycle_ms) {
     fixture_run_past(&f, message);
     f.traffic[message].cycle_ms = (uint16_t)cycle_ms;
     f.traffic[message].phase_ms = (uint16_t)(f.elapsed_ms % cycle_ms);
 }
 
+static void check_last_millisecond(const cause_t *cause) {
+    const uint32_t deadline_ms = cause_deadline_ms(cause);
+    fixture_init(&f);
+    f.what = agv_fault_name(cause->fault);
+    fixture_active(&f);
+    slow_down(cause->message, deadline_ms + 1);
+    expect_nothing_after(&f, 3000, cause->fault, AGV_STATE_ACTIVE);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, fixture_raised(&f, cause->fault), f.what);
+    slow_down(cause->message, deadline_ms + 2);
+    expect_nothing_after(&f, deadline_ms, cause->fault, AGV_STATE_ACTIVE);
+    expect_fault_after(&f, 1, cause->fault, true);
+}
+
 /* Frames are handled before the tick of their millisecond: one frame each deadline + 1 ms is always just in time. */
 /* Shows: SUP-2, SUP-3 */
 void test_a_frame_in_the_last_millisecond(void) {
-    for (unsigned i = 0; i < DEADLINE_COUNT; i++) {
-        fixture_init(&f);
-        f.what = agv_fault_name(DEADLINES[i].fault);
-        fixture_active(&f);
-        slow_down(DEADLINES[i].message, DEADLINES[i].deadline_ms + 1);
-        expect_nothing_after(&f, 3000, DEADLINES[i].fault, AGV_STATE_ACTIVE);
-        TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, fixture_raised(&f, DEADLINES[i].fault), f.what);
-        slow_down(DEADLINES[i].message, DEADLINES[i].deadline_ms + 2);
-        expect_nothing_after(&f, DEADLINES[i].deadline_ms, DEADLINES[i].fault, AGV_STATE_ACTIVE);
-        expect_fault_after(&f, 1, DEADLINES[i].fault, true);
+    for (unsigned i = 0; i < CAUSES; i++) {
+        if (cause_is_silence(&CAUSE[i])) {
+            check_last_millisecond(&CAUSE[i]);
+        }
     }
 }
 

@@ -141,8 +141,7 @@ void test_never_seen(void) {
 void test_never_seen_when_engaged_between_two_ticks(void) {
     f.traffic[AI].muted = true;
     fixture_standby(&f);
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_send_now(&f, VCU);
+    walk_report(&f, MODE_ENGAGED);
     expect_no_fault_after(500, AGV_STATE_STANDBY);
     expect_trip_after(&f, 1, LOST, ANGLE_CENTRE);
 }
@@ -172,8 +171,7 @@ void test_never_seen_and_the_time_is_over_before_the_engagement_is_continued(voi
     walk_disengage(&f);
     TEST_ASSERT_LESS_THAN_UINT32(500, f.now_ms - began_ms);
     expect_no_fault_after(520 - (f.now_ms - began_ms), AGV_STATE_STANDBY);
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_send_now(&f, VCU);
+    walk_report(&f, MODE_ENGAGED);
     expect_trip(&f, LOST, f.call, ANGLE_CENTRE);
 }
 
@@ -222,19 +220,12 @@ void test_lost_in_init(void) {
 
 /* ---- A reset forgets the AI computer ---- */
 
-static void reset(void) {
-    fixture_vehicle_confirms(&f);
-    expect_state_after(&f, 300, AGV_STATE_SAFE);
-    walk_reset(&f, 1100);
-    fixture_forget_sent(&f);
-}
-
 /* Raised as a trip, and as a warning when the VCU had switched to manual; ended by the reset. */
 static void trip_and_reset(agv_fault_t fault, bool *how) {
     fixture_active(&f);
     *how = true;
     fixture_run(&f, 1000);
-    reset(); /* the vehicle can be driven away manually with a dead AI computer */
+    walk_confirm_and_reset(&f); /* the vehicle can be driven away manually with a dead AI computer */
     expect_no_fault(AGV_STATE_STANDBY);
     expect_led(&f, 0);
     expect_no_fault_after(5000, AGV_STATE_STANDBY);
@@ -303,7 +294,7 @@ void test_a_reset_forgets_it_also_if_its_loss_trips_in_manual(void) {
     fixture_active(&f);
     f.traffic[AI].muted = true;
     fixture_run(&f, 1000);
-    reset();
+    walk_confirm_and_reset(&f);
     expect_no_fault_after(5000, AGV_STATE_STANDBY);
     f.traffic[AI].muted = false;
     fixture_run_past(&f, AI);
@@ -372,9 +363,8 @@ void test_the_vcus_ai_alarm_at_the_engagement(void) {
 void test_the_vcus_ai_alarm_stays_armed_after_a_reset(void) {
     fixture_active(&f);
     walk_trip(&f);
-    reset();
+    walk_confirm_and_reset(&f);
     set_alarm(true);
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_send_now(&f, VCU);
+    walk_report(&f, MODE_ENGAGED);
     expect_reason(&f, AGV_FAULT_VCU_AI_CAN_LOST);
 }

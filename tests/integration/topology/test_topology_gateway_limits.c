@@ -188,11 +188,9 @@ static void only_while_manual(uint16_t topology, agv_message_t message, uint32_t
     fixture_active(&f);
     f.traffic[message].muted = true;
     for (uint32_t ms = 0; ms < for_ms; ms += every_ms) {
-        fixture_mode(&f, MODE_MANUAL);
-        fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+        walk_report(&f, MODE_MANUAL);
         fixture_send_now(&f, message);
-        fixture_mode(&f, MODE_ENGAGED);
-        fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+        walk_report(&f, MODE_ENGAGED);
         fixture_run(&f, every_ms);
     }
 }

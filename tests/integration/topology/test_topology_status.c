@@ -129,23 +129,21 @@ void test_frames_that_are_no_other_sender_of_the_status_frame(void) {
 
 /* ---- Shadow ---- */
 
-/* From the start through a trip, with an AI computer that is overridden, to SAFE and back. */
+/* From the start to ACTIVE, through a trip, with an AI computer that is overridden, to SAFE and back to STANDBY. */
 static void go_round(fixture_t *fixture) {
     fixture_active(fixture);
     walk_trip(fixture);
-    fixture_run(fixture, 700);
+    expect_state_after(fixture, 700, AGV_STATE_TRIPPED);
     fixture_vehicle_confirms(fixture);
-    fixture_run(fixture, 1000);
-    fixture_button(fixture, true);
-    fixture_run(fixture, 1100);
-    fixture_button(fixture, false);
+    expect_state_after(fixture, 1000, AGV_STATE_SAFE);
+    walk_reset(fixture, 1100);
+    expect_state_after(fixture, 100, AGV_STATE_STANDBY);
 }
 
 /* Shows: TOP-4 */
 void test_in_shadow_no_frame_is_sent_in_any_state(void) {
     f.config.shadow = AGV_SHADOW_ON;
     f.config.status_frame_id = STATUS_ID;
-    fixture_start(&f);
     go_round(&f);
     TEST_ASSERT_EQUAL_UINT32(0, f.hal.op_calls[SIM_HAL_OP_CAN_SEND]);
     TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->sent);

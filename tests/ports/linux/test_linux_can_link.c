@@ -147,20 +147,46 @@ void test_a_message_that_says_it_is_shorter_or_longer(void) {
     TEST_ASSERT_TRUE(link_read.has_state);
 }
 
+/* Where a length stands, and the values with which the state is still found: lengths are rounded up to 4. */
+static const struct {
+    size_t at;
+    unsigned from;
+    unsigned to;
+    unsigned also_from;
+    unsigned also_to;
+} LENGTHS[] = {
+    {32, 9, 12, 17, 20},            /* the name; or name and IFLA_OPERSTATE as one */
+    {44, 5, 8, 5, 8},               /* IFLA_OPERSTATE */
+    {LINK_INFO_AT, 36, 36, 36, 36}, /* all that follows, and no more */
+    {KIND_AT, 8, 8, 8, 8},          /* "can" with its end */
+    {DATA_AT, 20, 24, 20, 24},      /* up to the state, or to the end */
+    {68, 5, 8, 5, 8},               /* IFLA_CAN_RESTART_MS */
+    {STATE_AT, 8, 8, 8, 8},         /* a state of 4 bytes */
+    {84, 0, 0x1FF, 0, 0x1FF},       /* behind the state */
+};
+
+static void read_with_length(size_t at, unsigned length) {
+    unsigned char *copy = malloc(sizeof message);
+    TEST_ASSERT_NOT_NULL(copy);
+    memcpy(copy, message, sizeof message);
+    copy[at] = (unsigned char)length;
+    copy[at + 1] = (unsigned char)(length >> 8);
+    const bool is_read = linux_can_link_read(copy, sizeof message, &link_read);
+    free(copy);
+    TEST_ASSERT_TRUE(is_read);
+    TEST_ASSERT_EQUAL_INT(5, link_read.index);
+}
+
 /* Each length of an attribute with each value that matters: the reading ends, and within the bytes. */
 void test_lengths_that_are_wrong(void) {
-    const size_t lengths[] = {32, 44, LINK_INFO_AT, KIND_AT, DATA_AT, 68, STATE_AT, 84};
-    for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
+    for (size_t i = 0; i < sizeof LENGTHS / sizeof LENGTHS[0]; i++) {
         for (unsigned value = 0; value < 0x200; value++) {
+            const bool is_found = (value >= LENGTHS[i].from && value <= LENGTHS[i].to) ||
+                                  (value >= LENGTHS[i].also_from && value <= LENGTHS[i].also_to);
             setUp();
-            unsigned char *copy = malloc(sizeof message);
-            TEST_ASSERT_NOT_NULL(copy);
-            memcpy(copy, message, sizeof message);
-            copy[lengths[i]] = (unsigned char)value;
-            copy[lengths[i] + 1] = (unsigned char)(value >> 8);
-            const bool is_read = linux_can_link_read(copy, sizeof message, &link_read);
-            free(copy);
-            TEST_ASSERT_TRUE(is_read);
+            read_with_length(LENGTHS[i].at, value);
+            TEST_ASSERT_EQUAL(is_found, link_read.has_state);
+            TEST_ASSERT_EQUAL(is_found ? HAL_CAN_BUS_OFF : HAL_CAN_ERROR_ACTIVE, link_read.state);
         }
     }
     setUp();

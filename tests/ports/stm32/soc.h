@@ -12,10 +12,12 @@ typedef struct {
     uint32_t OPTR;
     uint32_t ECCR;
     uint32_t OPTSR_CUR;
+    unsigned uses;
 } FLASH_TypeDef;
 
 typedef struct {
     uint32_t CFGR2;
+    unsigned uses;
 } SYSCFG_TypeDef;
 
 typedef struct {
@@ -33,8 +35,9 @@ extern FLASH_TypeDef test_flash;
 extern SYSCFG_TypeDef test_syscfg;
 extern RAMECC_MonitorTypeDef test_monitors[5];
 
-#define FLASH (&test_flash)
-#define SYSCFG (&test_syscfg)
+/* Each use is counted: a flag that is cleared by writing 1 does not change in memory. */
+#define FLASH (test_flash.uses++, &test_flash)
+#define SYSCFG (test_syscfg.uses++, &test_syscfg)
 
 #if defined(TEST_G4)
 #define FLASH_OPTR_BOR_LEV_Pos 8u

@@ -47,20 +47,41 @@ void test_an_nmi_of_the_oscillator(void) {
     TEST_ASSERT_EQUAL_UINT32(0, clock_flag);
 }
 
+/* What was done with a flag, by the number of uses of its register: looked at it, and written 1, which clears it. */
+enum { NOTHING = 0, LEFT = 1, CLEARED = 2 };
+
+static void expect_flash(unsigned done) {
+    TEST_ASSERT_EQUAL_UINT(done, test_flash.uses);
+    TEST_ASSERT_EQUAL_HEX32(0x80000000u, test_flash.ECCR); /* 0 would leave the flag */
+    test_flash.uses = 0;
+}
+
+static void expect_parity(unsigned done) {
+    TEST_ASSERT_EQUAL_UINT(done, test_syscfg.uses);
+    TEST_ASSERT_EQUAL_HEX32(0x100u, test_syscfg.CFGR2);
+    test_syscfg.uses = 0;
+}
+
 /* Expected while the log is read, and only then. */
 void test_an_nmi_of_the_flash(void) {
     test_flash.ECCR = 0x80000000u;
     TEST_ASSERT_FALSE(zephyr_chip_expects_nmi(false, true));
+    expect_flash(NOTHING);
     TEST_ASSERT_EQUAL_INT(HAL_END_FLASH_ECC, zephyr_chip_reason_of_nmi());
+    expect_flash(LEFT);
     TEST_ASSERT_TRUE(zephyr_chip_expects_nmi(true, false));
+    expect_flash(CLEARED);
 }
 
 /* Expected while memory is tested that was never written, and only then. */
 void test_an_nmi_of_the_ram(void) {
     test_syscfg.CFGR2 = 0x100u;
     TEST_ASSERT_FALSE(zephyr_chip_expects_nmi(true, false));
+    expect_parity(NOTHING);
     TEST_ASSERT_EQUAL_INT(HAL_END_RAM_PARITY, zephyr_chip_reason_of_nmi());
+    expect_parity(CLEARED);
     TEST_ASSERT_TRUE(zephyr_chip_expects_nmi(false, true));
+    expect_parity(CLEARED);
 }
 
 void test_there_is_no_error_correction_of_ram(void) {

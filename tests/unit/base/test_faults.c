@@ -1,8 +1,9 @@
-/* The table of faults, and sets of faults. An invalid fault is in no set and has no properties. */
+/* Sets of faults, and the properties of each (causes.c). An invalid fault is in no set and has no properties. */
 #include "agv/faults.h"
 
 #include <string.h>
 
+#include "causes.h"
 #include "unity.h"
 
 enum { BITS = 32 * AGV_FAULT_WORDS };
@@ -82,36 +83,13 @@ void test_an_invalid_fault_changes_nothing(void) {
     }
 }
 
-/* Shows: FSM-9, HW-1 */
-void test_four_faults_are_unresettable(void) {
-    for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
-        const bool unresettable = i == AGV_FAULT_SELF_TEST_FAILED || i == AGV_FAULT_MEMORY_CORRUPTED ||
-                                  i == AGV_FAULT_CONFIG_INVALID || i == AGV_FAULT_OUTPUT_FEEDBACK;
-        TEST_ASSERT_EQUAL(unresettable, (agv_fault_flags(i) & AGV_FAULT_FLAG_UNRESETTABLE) != 0);
+/* Which ones come from the AI computer, which are of the EPS, which are unresettable, which classes are mandatory. */
+/* Shows: FSM-3, FSM-9, FSM-10, FSM-11, HW-1, INT-2 */
+void test_the_properties_of_every_fault(void) {
+    TEST_ASSERT_EQUAL_UINT(FAULT_ROWS, AGV_FAULT_COUNT);
+    for (unsigned i = 0; i < FAULT_ROWS; i++) {
+        TEST_ASSERT_EQUAL_HEX8_MESSAGE(FAULT_ROW[i].flags, agv_fault_flags(i), FAULT_ROW[i].name);
+        TEST_ASSERT_EQUAL_MESSAGE(FAULT_ROW[i].trip ? AGV_CLASS_TRIP : AGV_CLASS_WARN, agv_fault_default_class(i),
+                                  FAULT_ROW[i].name);
     }
-}
-
-/* Mandatory faults are trips by default. STARTUP_TIMEOUT must stay a warning. */
-void test_mandatory_faults_are_trips(void) {
-    TEST_ASSERT_EQUAL_HEX8(AGV_FAULT_FLAG_FIXED, agv_fault_flags(AGV_FAULT_STARTUP_TIMEOUT));
-    for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
-        if ((i != AGV_FAULT_STARTUP_TIMEOUT) && ((agv_fault_flags(i) & AGV_FAULT_FLAG_FIXED) != 0)) {
-            TEST_ASSERT_EQUAL(AGV_CLASS_TRIP, agv_fault_default_class(i));
-        }
-    }
-    TEST_ASSERT_TRUE((agv_fault_flags(AGV_FAULT_BUS_OFF) & AGV_FAULT_FLAG_FIXED) != 0);
-    TEST_ASSERT_EQUAL(AGV_CLASS_WARN, agv_fault_default_class(AGV_FAULT_RX_OVERRUN));
-}
-
-/* By hand from the rows of the AI computer and of the EPS. */
-/* Shows: FSM-3, FSM-10 */
-void test_the_other_properties_of_some_faults(void) {
-    TEST_ASSERT_EQUAL_HEX8(AGV_FAULT_FLAG_FIXED | AGV_FAULT_FLAG_FROM_AI, agv_fault_flags(AGV_FAULT_AI_HEARTBEAT_LOST));
-    TEST_ASSERT_EQUAL_HEX8(AGV_FAULT_FLAG_FROM_AI, agv_fault_flags(AGV_FAULT_COMMAND_TOO_FAST));
-    TEST_ASSERT_EQUAL_HEX8(AGV_FAULT_FLAG_FIXED | AGV_FAULT_FLAG_OF_EPS, agv_fault_flags(AGV_FAULT_EPS_STATUS_TIMEOUT));
-    TEST_ASSERT_EQUAL_HEX8(AGV_FAULT_FLAG_FIXED, agv_fault_flags(AGV_FAULT_EPS_MODE_OFF));
-    TEST_ASSERT_EQUAL_HEX8(AGV_FAULT_FLAG_FROM_AI | AGV_FAULT_FLAG_GATEWAY, agv_fault_flags(AGV_FAULT_AI_BUS_OFF));
-    TEST_ASSERT_EQUAL_HEX8(AGV_FAULT_FLAG_FIXED | AGV_FAULT_FLAG_FROM_AI, agv_fault_flags(AGV_FAULT_VCU_AI_CAN_LOST));
-    TEST_ASSERT_EQUAL_HEX8(AGV_FAULT_FLAG_FIXED, agv_fault_flags(AGV_FAULT_FOREIGN_COMMAND_SENDER));
-    TEST_ASSERT_EQUAL_HEX8(0, agv_fault_flags(AGV_FAULT_S_DRIVER_ALARM));
 }

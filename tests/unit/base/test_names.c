@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "settings_expected.h"
 #include "unity.h"
 
 void test_an_invalid_fault_has_no_name(void) {
@@ -102,10 +103,13 @@ void test_every_setting_is_described(void) {
     for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
         const agv_setting_info_t *info = agv_setting_info(i);
         TEST_ASSERT_TRUE(strlen(info->name) > 0 && strlen(info->meaning) > 0);
-        TEST_ASSERT_TRUE(info->lowest <= info->preset && info->preset <= info->highest);
+        TEST_ASSERT_EQUAL_UINT16_MESSAGE(SETTING_EXPECTED[i].preset, info->preset, info->name);
+        TEST_ASSERT_EQUAL_UINT16_MESSAGE(SETTING_EXPECTED[i].lowest, info->lowest, info->name);
+        TEST_ASSERT_EQUAL_UINT16_MESSAGE(SETTING_EXPECTED[i].highest, info->highest, info->name);
+        TEST_ASSERT_EQUAL_MESSAGE(SETTING_EXPECTED[i].scope == GATEWAY_ONLY, info->gateway_only, info->name);
+        TEST_ASSERT_EQUAL_MESSAGE(i < SETTINGS_EXPECTED_CHOICES, info->words != NULL, info->name);
         if (info->words != NULL) {
             TEST_ASSERT_NOT_NULL(strchr(info->words, '|'));
-            TEST_ASSERT_EQUAL_UINT16(0, info->lowest);
             unsigned last = 0;
             for (const char *at = info->words; *at != '\0'; at++) {
                 last += (*at == '|') ? 1 : 0;

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "settings_expected.h"
 #include "unity.h"
 
 /* A duration and a deadline of 100 ms each. */
@@ -136,62 +137,83 @@ void test_a_stopped_timer_reaches_nothing(void) {
     TEST_ASSERT_FALSE(reached(DURATION, 2000));
 }
 
-/* By hand from the rows of the requirements: "for 100 ms" is reached at 100, a deadline of 50 ms at 51. */
+/* When a timer is reached, against its limit: "for 100 ms" at 100, a deadline of 50 ms at 51. A step is due 1 ms after the
+ * last one. */
+enum { FOR_DURATION = 0, FOR_DEADLINE = 1, FOR_STEP = 2 };
+
+/* By hand from the rows of the requirements. */
 static const struct {
     uint32_t timer;
     uint32_t setting;
-    uint32_t reached_ms;
+    uint32_t later_ms;
 } ROWS[] = {
-    {AGV_TIMER_BUS_OFF, AGV_SETTING_bus_off_recovery_ms, 100},
-    {AGV_TIMER_AI_BUS_OFF, AGV_SETTING_bus_off_recovery_ms, 100},
-    {AGV_TIMER_WHEELS_SLOW, AGV_SETTING_standstill_ms, 100},
-    {AGV_TIMER_STANDSTILL, AGV_SETTING_standstill_ms, 100},
-    {AGV_TIMER_WHEELS_STOOD, AGV_SETTING_hold_standstill_ms, 5000},
-    {AGV_TIMER_ANGLE, AGV_SETTING_hold_age_ms, 51},
-    {AGV_TIMER_ENGAGED, AGV_SETTING_engaged_grace_ms, 500},
-    {AGV_TIMER_DISENGAGED, AGV_SETTING_reengage_ms, 101},
-    {AGV_TIMER_ENGAGEMENT_1, AGV_SETTING_mode_flapping_ms, 5001},
-    {AGV_TIMER_ENGAGEMENT_2, AGV_SETTING_mode_flapping_ms, 5001},
-    {AGV_TIMER_ENGAGEMENT_3, AGV_SETTING_mode_flapping_ms, 5001},
-    {AGV_TIMER_BOTH_MODES, AGV_SETTING_mode_invalid_ms, 51},
-    {AGV_TIMER_NO_MODE, AGV_SETTING_mode_none_ms, 500},
-    {AGV_TIMER_AI_NEVER_SEEN, AGV_SETTING_ai_never_seen_timeout_ms, 501},
-    {AGV_TIMER_OTHER_TURN_SIGNAL, AGV_SETTING_wrong_id_set_ms, 501},
-    {AGV_TIMER_OTHER_VEHICLE_STATUS, AGV_SETTING_wrong_id_set_ms, 501},
-    {AGV_TIMER_INIT_GOOD, AGV_SETTING_init_hold_ms, 500},
-    {AGV_TIMER_STARTUP, AGV_SETTING_startup_timeout_ms, 10001},
-    {AGV_TIMER_PARK_WAIT, AGV_SETTING_park_timeout_ms, 3000},
-    {AGV_TIMER_CONFIRMED, AGV_SETTING_confirmed_ms, 5000},
-    {AGV_TIMER_STOP, AGV_SETTING_stop_timeout_ms, 5000},
-    {AGV_TIMER_PRESS, AGV_SETTING_reset_hold_ms, 1000},
-    {AGV_TIMER_PRESS_LONG, AGV_SETTING_reset_hold_max_ms, 5001},
-    {AGV_TIMER_WATCHDOG_FED, AGV_SETTING_watchdog_period_ms, 102},
-    {AGV_TIMER_TX_TURN_SIGNAL, AGV_SETTING_tx_stalled_ms, 101},
-    {AGV_TIMER_TX_STEERING, AGV_SETTING_tx_stalled_ms, 101},
-    {AGV_TIMER_TX_STATUS, AGV_SETTING_tx_stalled_ms, 101},
-    {AGV_TIMER_TX_AI, AGV_SETTING_tx_stalled_ms, 101},
-    {AGV_TIMER_EVENT_RX_OVERRUN, AGV_SETTING_event_hold_ms, 1000},
-    {AGV_TIMER_EVENT_MODE_FLAPPING, AGV_SETTING_event_hold_ms, 1000},
-    {AGV_TIMER_MESSAGE_TURN_SIGNAL_COMMAND, AGV_SETTING_ai_heartbeat_timeout_ms, 351},
-    {AGV_TIMER_MESSAGE_GEAR_COMMAND, AGV_SETTING_gear_command_timeout_ms, 351},
-    {AGV_TIMER_MESSAGE_THROTTLE_COMMAND, AGV_SETTING_throttle_command_timeout_ms, 351},
-    {AGV_TIMER_MESSAGE_STEERING_COMMAND, AGV_SETTING_steering_command_timeout_ms, 126},
-    {AGV_TIMER_MESSAGE_VEHICLE_STATUS, AGV_SETTING_vcu_heartbeat_timeout_ms, 51},
-    {AGV_TIMER_MESSAGE_GEAR_STATUS, AGV_SETTING_gear_status_timeout_ms, 126},
-    {AGV_TIMER_MESSAGE_THROTTLE_STATUS, AGV_SETTING_throttle_status_timeout_ms, 61},
-    {AGV_TIMER_MESSAGE_STEERING_STATUS, AGV_SETTING_eps_heartbeat_timeout_ms, 51},
-    {AGV_TIMER_MESSAGE_EPS_STATUS, AGV_SETTING_eps_status_timeout_ms, 61},
-    {AGV_TIMER_MESSAGE_STEERING_POSITION, AGV_SETTING_steering_position_timeout_ms, 61},
-    {AGV_TIMER_MESSAGE_WHEEL_SPEED, AGV_SETTING_wheel_speed_timeout_ms, 61},
+    {AGV_TIMER_BUS_OFF, AGV_SETTING_bus_off_recovery_ms, FOR_DURATION},
+    {AGV_TIMER_AI_BUS_OFF, AGV_SETTING_bus_off_recovery_ms, FOR_DURATION},
+    {AGV_TIMER_WHEELS_SLOW, AGV_SETTING_standstill_ms, FOR_DURATION},
+    {AGV_TIMER_STANDSTILL, AGV_SETTING_standstill_ms, FOR_DURATION},
+    {AGV_TIMER_WHEELS_STOOD, AGV_SETTING_hold_standstill_ms, FOR_DURATION},
+    {AGV_TIMER_ANGLE, AGV_SETTING_hold_age_ms, FOR_DEADLINE},
+    {AGV_TIMER_ENGAGED, AGV_SETTING_engaged_grace_ms, FOR_DURATION},
+    {AGV_TIMER_DISENGAGED, AGV_SETTING_reengage_ms, FOR_DEADLINE},
+    {AGV_TIMER_ENGAGEMENT_1, AGV_SETTING_mode_flapping_ms, FOR_DEADLINE},
+    {AGV_TIMER_ENGAGEMENT_2, AGV_SETTING_mode_flapping_ms, FOR_DEADLINE},
+    {AGV_TIMER_ENGAGEMENT_3, AGV_SETTING_mode_flapping_ms, FOR_DEADLINE},
+    {AGV_TIMER_BOTH_MODES, AGV_SETTING_mode_invalid_ms, FOR_DEADLINE},
+    {AGV_TIMER_NO_MODE, AGV_SETTING_mode_none_ms, FOR_DURATION},
+    {AGV_TIMER_AI_NEVER_SEEN, AGV_SETTING_ai_never_seen_timeout_ms, FOR_DEADLINE},
+    {AGV_TIMER_OTHER_TURN_SIGNAL, AGV_SETTING_wrong_id_set_ms, FOR_DEADLINE},
+    {AGV_TIMER_OTHER_VEHICLE_STATUS, AGV_SETTING_wrong_id_set_ms, FOR_DEADLINE},
+    {AGV_TIMER_INIT_GOOD, AGV_SETTING_init_hold_ms, FOR_DURATION},
+    {AGV_TIMER_STARTUP, AGV_SETTING_startup_timeout_ms, FOR_DEADLINE},
+    {AGV_TIMER_PARK_WAIT, AGV_SETTING_park_timeout_ms, FOR_DURATION},
+    {AGV_TIMER_CONFIRMED, AGV_SETTING_confirmed_ms, FOR_DURATION},
+    {AGV_TIMER_STOP, AGV_SETTING_stop_timeout_ms, FOR_DURATION},
+    {AGV_TIMER_PRESS, AGV_SETTING_reset_hold_ms, FOR_DURATION},
+    {AGV_TIMER_PRESS_LONG, AGV_SETTING_reset_hold_max_ms, FOR_DEADLINE},
+    {AGV_TIMER_PIN_PRESS, AGV_SETTING_reset_hold_ms, FOR_DURATION},
+    {AGV_TIMER_PIN_PRESS_LONG, AGV_SETTING_reset_hold_max_ms, FOR_DEADLINE},
+    {AGV_TIMER_WATCHDOG_FED, AGV_SETTING_watchdog_period_ms, FOR_STEP},
+    {AGV_TIMER_TX_TURN_SIGNAL, AGV_SETTING_tx_stalled_ms, FOR_DEADLINE},
+    {AGV_TIMER_TX_GEAR, AGV_SETTING_tx_stalled_ms, FOR_DEADLINE},
+    {AGV_TIMER_TX_THROTTLE, AGV_SETTING_tx_stalled_ms, FOR_DEADLINE},
+    {AGV_TIMER_TX_STEERING, AGV_SETTING_tx_stalled_ms, FOR_DEADLINE},
+    {AGV_TIMER_TX_STATUS, AGV_SETTING_tx_stalled_ms, FOR_DEADLINE},
+    {AGV_TIMER_TX_AI, AGV_SETTING_tx_stalled_ms, FOR_DEADLINE},
+    {AGV_TIMER_EVENT_SUPERVISOR_RESET, AGV_SETTING_event_hold_ms, FOR_DURATION},
+    {AGV_TIMER_EVENT_TX_GATE_REFUSED, AGV_SETTING_event_hold_ms, FOR_DURATION},
+    {AGV_TIMER_EVENT_STEP_OVERRUN, AGV_SETTING_event_hold_ms, FOR_DURATION},
+    {AGV_TIMER_EVENT_MODE_FLAPPING, AGV_SETTING_event_hold_ms, FOR_DURATION},
+    {AGV_TIMER_EVENT_AI_COMMAND_OUT_OF_RANGE, AGV_SETTING_event_hold_ms, FOR_DURATION},
+    {AGV_TIMER_EVENT_FOREIGN_COMMAND_SENDER, AGV_SETTING_event_hold_ms, FOR_DURATION},
+    {AGV_TIMER_EVENT_STATUS_ID_IN_USE, AGV_SETTING_event_hold_ms, FOR_DURATION},
+    {AGV_TIMER_EVENT_RX_OVERRUN, AGV_SETTING_event_hold_ms, FOR_DURATION},
+    {AGV_TIMER_EVENT_STORE_INVALID, AGV_SETTING_event_hold_ms, FOR_DURATION},
+    {AGV_TIMER_MESSAGE_TURN_SIGNAL_COMMAND, AGV_SETTING_ai_heartbeat_timeout_ms, FOR_DEADLINE},
+    {AGV_TIMER_MESSAGE_GEAR_COMMAND, AGV_SETTING_gear_command_timeout_ms, FOR_DEADLINE},
+    {AGV_TIMER_MESSAGE_THROTTLE_COMMAND, AGV_SETTING_throttle_command_timeout_ms, FOR_DEADLINE},
+    {AGV_TIMER_MESSAGE_STEERING_COMMAND, AGV_SETTING_steering_command_timeout_ms, FOR_DEADLINE},
+    {AGV_TIMER_MESSAGE_VEHICLE_STATUS, AGV_SETTING_vcu_heartbeat_timeout_ms, FOR_DEADLINE},
+    {AGV_TIMER_MESSAGE_GEAR_STATUS, AGV_SETTING_gear_status_timeout_ms, FOR_DEADLINE},
+    {AGV_TIMER_MESSAGE_THROTTLE_STATUS, AGV_SETTING_throttle_status_timeout_ms, FOR_DEADLINE},
+    {AGV_TIMER_MESSAGE_STEERING_STATUS, AGV_SETTING_eps_heartbeat_timeout_ms, FOR_DEADLINE},
+    {AGV_TIMER_MESSAGE_EPS_STATUS, AGV_SETTING_eps_status_timeout_ms, FOR_DEADLINE},
+    {AGV_TIMER_MESSAGE_STEERING_POSITION, AGV_SETTING_steering_position_timeout_ms, FOR_DEADLINE},
+    {AGV_TIMER_MESSAGE_WHEEL_SPEED, AGV_SETTING_wheel_speed_timeout_ms, FOR_DEADLINE},
 };
+enum { ROW_COUNT = sizeof ROWS / sizeof ROWS[0] };
 
 /* Shows: INT-2 */
 void test_every_timer_has_the_limit_of_its_setting(void) {
-    for (unsigned i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
+    bool is_seen[AGV_TIMER_COUNT] = {false};
+    TEST_ASSERT_EQUAL_UINT(ROW_COUNT, AGV_TIMER_COUNT);
+    for (unsigned i = 0; i < ROW_COUNT; i++) {
+        const uint32_t reached_ms = SETTING_EXPECTED[ROWS[i].setting].preset + ROWS[i].later_ms;
+        TEST_ASSERT_FALSE(is_seen[ROWS[i].timer]);
+        is_seen[ROWS[i].timer] = true;
         agv_config_defaults(&config);
         begin(ROWS[i].timer, 7);
-        TEST_ASSERT_FALSE(reached(ROWS[i].timer, 7 + ROWS[i].reached_ms - 1));
-        TEST_ASSERT_TRUE(reached(ROWS[i].timer, 7 + ROWS[i].reached_ms));
+        TEST_ASSERT_FALSE(reached(ROWS[i].timer, 7 + reached_ms - 1));
+        TEST_ASSERT_TRUE(reached(ROWS[i].timer, 7 + reached_ms));
         TEST_ASSERT_TRUE(agv_config_set(&config, ROWS[i].setting, 777));
         TEST_ASSERT_EQUAL_UINT32(777, agv_timer_limit_ms(&config, ROWS[i].timer));
     }

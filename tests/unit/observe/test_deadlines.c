@@ -1,6 +1,7 @@
 /* The fault of each silence: of messages, of heartbeats, of the own identifiers. */
 #include "observe/deadlines.h"
 
+#include "causes.h"
 #include "unity.h"
 
 enum { NONE = AGV_FAULT_NONE };
@@ -62,24 +63,6 @@ static void expect_only(unsigned fault) {
     }
 }
 
-/* By hand from SUP-2 and SUP-3. */
-static const struct {
-    unsigned message;
-    unsigned fault;
-    uint32_t timeout_ms;
-    bool while_engaged;
-} SILENCES[] = {
-    {AGV_MSG_GEAR_COMMAND, AGV_FAULT_GEAR_COMMAND_TIMEOUT, 350, true},
-    {AGV_MSG_THROTTLE_COMMAND, AGV_FAULT_THROTTLE_COMMAND_TIMEOUT, 350, true},
-    {AGV_MSG_STEERING_COMMAND, AGV_FAULT_STEERING_COMMAND_TIMEOUT, 125, true},
-    {AGV_MSG_GEAR_STATUS, AGV_FAULT_GEAR_STATUS_TIMEOUT, 125, false},
-    {AGV_MSG_THROTTLE_STATUS, AGV_FAULT_THROTTLE_STATUS_TIMEOUT, 60, false},
-    {AGV_MSG_EPS_STATUS, AGV_FAULT_EPS_STATUS_TIMEOUT, 60, false},
-    {AGV_MSG_STEERING_POSITION, AGV_FAULT_STEERING_POSITION_TIMEOUT, 60, false},
-    {AGV_MSG_WHEEL_SPEED, AGV_FAULT_WHEEL_SPEED_TIMEOUT, 60, false},
-};
-enum { SILENCE_COUNT = sizeof SILENCES / sizeof SILENCES[0] };
-
 /* Two frames make the heartbeats alive. Then all messages but one come until its deadline has expired. */
 static void be_silent(unsigned message, uint32_t timeout_ms) {
     others_arrive(NONE, 1, 0);
@@ -90,54 +73,58 @@ static void be_silent(unsigned message, uint32_t timeout_ms) {
     tick(timeout_ms + 1);
 }
 
-/* Shows: SUP-3 */
+static bool is_heartbeat(const cause_t *cause) {
+    return TRAFFIC[cause->message].counter_at >= 0;
+}
+
+/* With each silence of the table. In manual, that of the AI computer counts once it was alive. */
+static void check_silence(const cause_t *cause) {
+    const uint32_t deadline_ms = cause_deadline_ms(cause);
+    setUp();
+    be_silent(cause->message, deadline_ms);
+    expect_only((cause->how == BY_SILENCE) || is_heartbeat(cause) ? cause->fault : (unsigned)NONE);
+    setUp();
+    engaged = true;
+    be_silent(cause->message, deadline_ms);
+    expect_only(cause->fault);
+    arrives(cause->message, 4, deadline_ms + 2);
+    tick(deadline_ms + 2);
+    expect_only(NONE);
+}
+
+/* Shows: SUP-2, SUP-3 */
 void test_the_fault_of_each_silence(void) {
-    for (unsigned i = 0; i < SILENCE_COUNT; i++) {
-        setUp();
-        engaged = true;
-        be_silent(SILENCES[i].message, SILENCES[i].timeout_ms);
-        expect_only(SILENCES[i].fault);
-        arrives(SILENCES[i].message, 4, SILENCES[i].timeout_ms + 2);
-        tick(SILENCES[i].timeout_ms + 2);
-        expect_only(NONE);
+    for (unsigned i = 0; i < CAUSES; i++) {
+        if (cause_is_silence(&CAUSE[i])) {
+            check_silence(&CAUSE[i]);
+        }
     }
-}
-
-/* Shows: SUP-3 */
-void test_silent_commands_count_while_engaged(void) {
-    for (unsigned i = 0; i < SILENCE_COUNT; i++) {
-        setUp();
-        be_silent(SILENCES[i].message, SILENCES[i].timeout_ms);
-        expect_only(SILENCES[i].while_engaged ? (unsigned)NONE : SILENCES[i].fault);
-    }
-}
-
-/* Shows: SUP-2 */
-TEST_CASE(AGV_MSG_VEHICLE_STATUS, AGV_FAULT_VCU_HEARTBEAT_LOST, 50)
-TEST_CASE(AGV_MSG_STEERING_STATUS, AGV_FAULT_EPS_HEARTBEAT_LOST, 50)
-TEST_CASE(AGV_MSG_TURN_SIGNAL_COMMAND, AGV_FAULT_AI_HEARTBEAT_LOST, 350)
-void test_a_heartbeat_is_lost(unsigned message, unsigned fault, uint32_t timeout_ms) {
-    be_silent(message, timeout_ms);
-    expect_only(fault);
 }
 
 /* The last frame with the old counter came just before. */
-/* Shows: SUP-2 */
-TEST_CASE(AGV_MSG_VEHICLE_STATUS, AGV_FAULT_VCU_HEARTBEAT_STUCK, 50)
-TEST_CASE(AGV_MSG_STEERING_STATUS, AGV_FAULT_EPS_HEARTBEAT_STUCK, 50)
-TEST_CASE(AGV_MSG_TURN_SIGNAL_COMMAND, AGV_FAULT_AI_HEARTBEAT_STUCK, 350)
-void test_a_heartbeat_is_stuck(unsigned message, unsigned fault, uint32_t timeout_ms) {
+static void check_freeze(const cause_t *cause) {
+    const uint32_t deadline_ms = cause_deadline_ms(cause);
+    setUp();
     others_arrive(NONE, 1, 0);
     others_arrive(NONE, 2, 0);
-    others_arrive(message, 3, timeout_ms);
-    arrives(message, 2, timeout_ms);
-    tick(timeout_ms);
+    others_arrive(cause->message, 3, deadline_ms);
+    arrives(cause->message, 2, deadline_ms);
+    tick(deadline_ms);
     expect_only(NONE);
-    tick(timeout_ms + 1);
-    expect_only(fault);
-    arrives(message, 3, timeout_ms + 2);
-    tick(timeout_ms + 2);
+    tick(deadline_ms + 1);
+    expect_only(cause->fault);
+    arrives(cause->message, 3, deadline_ms + 2);
+    tick(deadline_ms + 2);
     expect_only(NONE);
+}
+
+/* Shows: SUP-2 */
+void test_a_heartbeat_is_stuck(void) {
+    for (unsigned i = 0; i < CAUSES; i++) {
+        if ((CAUSE[i].how == BY_FREEZE) || (CAUSE[i].how == BY_FREEZE_ENGAGED)) {
+            check_freeze(&CAUSE[i]);
+        }
+    }
 }
 
 /* Engaged, and no 43Fh was ever received. The time begins with the engagement, which mode.c starts; an interruption
