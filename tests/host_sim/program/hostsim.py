@@ -14,6 +14,10 @@ PROGRAM = os.environ["HOST_SIM"]
 STUBS = {name: os.environ.get("HOST_SIM_" + name.upper()) for name in ("mute", "tripped")}  # with a stub supervisor
 PART = int(os.environ.get("HOST_SIM_PART", "1"))  # long runs do so small a part: a program full of checks is ten times slower
 
+SCENARIOS = pathlib.Path(__file__).resolve().parents[3] / "host_sim" / "scenarios"
+SHIPPED = sorted(SCENARIOS.glob("*/*.yaml"))
+LEAST = 330  # of them; with fewer a test is wrong. Also read by tests/web/test_module.mjs
+
 OUTPUTS = {"--events": "events.jsonl", "--out": "out.log", "--store": "store", "--why": "why.json", "--report": "report.html",
            "--trace": "trace.json"}
 
