@@ -11,8 +11,9 @@ A proof (tests/proofs) says it on a line `# Shows: SUP-2`, or `# Shows: -` when 
 by naming the row in a comment. A requirement or a fault whose row in docs/requirements.md or docs/faults.md says "not built
 yet" needs neither.
 
-Prints row -> tests. Fails on a row without a test, a level of evidence that no test has, a tag that names no row or stands
-above no test, a scenario without a tag, a C test that its folder's CMakeLists.txt does not build, and a proof without a tag.
+Prints row -> tests. Fails on a row without a test, a level of evidence that no test has, a tag that names no row, stands
+above no test or within another comment, a scenario without a tag, a C test that its folder's CMakeLists.txt does not build,
+and a proof without a tag.
 The pages: docs/traceability.md (the tests of each row) and docs/evidence.md (evidence.py).
 """
 import argparse
@@ -72,11 +73,19 @@ def not_built(root):
     return {match[1] for match in (re.match(r"\| (?:\d+ \| )?`?([A-Z]+-\d+|[A-Z_]+)`? \|", row) for row in rows) if match}
 
 
+def tags_of(pattern, path, root, problems):
+    """Every "Shows:" of a file; one that is part of another comment would be ignored."""
+    text = path.read_text(encoding="utf-8")
+    tags = list(pattern.finditer(text))
+    if text.count("Shows:") != len(tags):
+        problems.append(f"{path.relative_to(root)}: a 'Shows:' is not a comment of its own")
+    return tags
+
+
 def read_tags(root, problems):
     """(rows as text, name of the test, file) of every tag."""
     for path in sorted((root / "tests").rglob("*.c")):
-        text = path.read_text(encoding="utf-8")
-        tags = list(C_TAG.finditer(text))
+        tags = tags_of(C_TAG, path, root, problems)
         lists = (path.parent.parent if path.parent.name == "src" else path.parent) / "CMakeLists.txt"
         if tags and not (lists.exists() and path.name in lists.read_text(encoding="utf-8")):
             problems.append(f"{path.relative_to(root)} is not built: {lists.relative_to(root)} does not name it")
@@ -84,7 +93,7 @@ def read_tags(root, problems):
             test = tag["test"] or tag["parametrised"] or tag["ztest"]
             yield tag["rows"], test if test and test.startswith("test_") else None, path
     for path in sorted([*(root / "tests").rglob("*.py"), *(root / "tests").rglob("*.bats")]):
-        for tag in SCRIPT_TAG.finditer(path.read_text(encoding="utf-8")):
+        for tag in tags_of(SCRIPT_TAG, path, root, problems):
             yield tag["rows"], tag["python"] or tag["bats"], path
     scenarios = {}
     for path in sorted((root / "host_sim/scenarios").glob("*/*.yaml")):

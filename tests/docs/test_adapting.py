@@ -8,11 +8,15 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import unittest
 
 import typed
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/support"))
+import tree  # noqa: E402
+
 PAGE = pathlib.Path(os.environ.get("AGV_ADAPTING_PAGE", ROOT / "docs/adapting.md"))
 PROGRAM = pathlib.Path(os.environ["HOST_SIM"])
 WORK = pathlib.Path(os.environ["AGV_DOCS_WORK"]) / "adapting"
@@ -41,7 +45,7 @@ def compile_tables(case):
 
 class Adapting(unittest.TestCase):
     def test_what_the_page_says(self):
-        typed.copy_tree(ROOT, WORK)
+        tree.copy_tree(ROOT, WORK)
         built = WORK / "build/host/bin"
         (built / "host_sim").unlink(missing_ok=True)
         environment = {"TZ": "UTC", "PATH": os.pathsep.join((str(built), str(PROGRAM.parent), os.environ["PATH"])),

@@ -44,20 +44,6 @@ def pattern(lines):
     return r"\A(?:%s)\Z" % "".join(parts)
 
 
-def copy_tree(root, copy):
-    """The sources, and what is new in them, without a repository. What `copy` has built stays."""
-    copy.mkdir(parents=True, exist_ok=True)
-    for entry in copy.iterdir():
-        if entry.name != "build":
-            shutil.rmtree(entry) if entry.is_dir() and not entry.is_symlink() else entry.unlink()
-    listed = subprocess.run(["git", "-c", f"safe.directory={root}", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
-                            cwd=root, check=True, stdout=subprocess.PIPE, text=True).stdout
-    for name in filter(None, listed.split("\0")):
-        if (root / name).exists():
-            (copy / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(root / name, copy / name, follow_symlinks=False)
-
-
 def follow(case, these, folder, environment, left_out=(), instead=None):
     """Do these steps, in this folder. `$?` is the status of the command before. @return the number of commands"""
     count, status = 0, 0

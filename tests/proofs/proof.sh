@@ -35,6 +35,15 @@ build_host() {
     build host "${programs[@]}"
 }
 
+# each_seeded CHECKER FUNCTION: runs FUNCTION NAME ARGUMENTS TEXT for each seeded fault of the checker
+each_seeded() {
+    local lines name arguments text
+    lines=$("$seed" rows "$1") || die "the seeded faults of $1 cannot be read"
+    while IFS=$'\t' read -r name arguments text; do
+        "$2" "$name" "$arguments" "$text"
+    done <<<"$lines"
+}
+
 # each_shard FUNCTION ARGUMENT...: runs FUNCTION I ARGUMENT... for each processor I, from 1, beside each other. Exit status 1 if
 # one of them fails.
 each_shard() {

@@ -19,7 +19,6 @@ import concurrent.futures
 import os
 import pathlib
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -27,6 +26,9 @@ import threading
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
+sys.path.insert(0, str(ROOT / "tests/support"))
+import tree  # noqa: E402
+
 SECONDS = 1800  # a flip of each bit takes minutes
 
 
@@ -108,23 +110,14 @@ def run_program(fault, folder):
     return fault.judge(*execute([str(program), *fault.arguments.split()], ROOT))
 
 
-def copy_tree(copy):
-    listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT, check=True,
-                            stdout=subprocess.PIPE, text=True).stdout
-    for name in filter(None, listed.split("\0")):
-        if (ROOT / name).exists():
-            (copy / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(ROOT / name, copy / name, follow_symlinks=False)
-    (copy / "build").symlink_to(ROOT / "build")
-
-
 def run_in_tree(fault, folder):
     """The command writes nothing into the tree: the next one has the same copy, a copy for each thread."""
     if not fault.changes:
         return fault.judge(*execute(fault.arguments, ROOT))
     copy = pathlib.Path(folder) / str(threading.get_ident())
     if not copy.exists():
-        copy_tree(copy)
+        tree.copy_tree(ROOT, copy)
+        (copy / "build").symlink_to(ROOT / "build")
     before = {path: (copy / path).read_bytes() if (copy / path).exists() else None for path in fault.files()}
     apply(fault, copy, True)
     result = fault.judge(*execute(fault.arguments, copy))

@@ -21,7 +21,7 @@ import time
 import unittest
 
 import in_memory
-from on_time import on_time
+from on_time import Late, on_time
 
 PROGRAM = os.environ["HOST_SIM"]
 if MEMORY := in_memory.folder():
@@ -170,7 +170,7 @@ class Process:
 
 
 class Terminal:
-    """The program on a terminal. `seen` is what it has written, control sequences included."""
+    """The program on a terminal. What it has written, control sequences included: `seen` since the last key, `written` ever."""
 
     def __init__(self, *arguments, width=80, height=24, **environment):
         self.ours, theirs = pty.openpty()
@@ -179,16 +179,18 @@ class Terminal:
                                         stderr=subprocess.PIPE, start_new_session=True,
                                         env={**os.environ, "TERM": "xterm", "LANG": "C.UTF-8", **environment})
         os.close(theirs)
-        self.seen = b""
+        self.seen = self.written = b""
 
     def read(self, seconds):
         """Read until then. Gives whether there was something."""
         if not select.select([self.ours], [], [], max(0, seconds))[0]:
             return False
         try:
-            self.seen += os.read(self.ours, 65536)
+            news = os.read(self.ours, 65536)
         except OSError:  # the other end is closed
             return False
+        self.seen += news
+        self.written += news
         return True
 
     def wait_for(self, expression, timeout=TIMEOUT):
@@ -234,6 +236,11 @@ class Case(unittest.TestCase):
 
     def check_every_run(self):
         """What must be true after each test."""
+
+    def at_most(self, limit, measured, what):
+        """Of times in seconds."""
+        if measured > limit:
+            raise Late("%s took %.1f ms, more than %.1f" % (what, 1000 * measured, 1000 * limit))
 
     def bus(self, interface="vcan0"):
         bus = Bus(interface)

@@ -17,7 +17,6 @@ import time
 
 import canbus
 import in_memory
-from on_time import Late
 
 TOOLS = ("cansend", "candump", "canplayer", "canbusload", "ip", "tc")
 TIMEOUT_S = canbus.TIMEOUT
@@ -391,10 +390,6 @@ class Case(canbus.Case):
             self.check_all_accounted_for(interface)
             if not self.shaped:
                 self.assertEqual(len(self.frames(interface)), dump.sent_by_kernel, "frames of candump, and of the kernel")
-
-    def at_most(self, limit, measured, what):
-        if measured > limit:
-            raise Late("%s took %.1f ms, more than %.1f" % (what, 1000 * measured, 1000 * limit))
 
     def at_once(self, cause, answer, within=0.010):
         """The reaction must follow the cause in time."""

@@ -188,15 +188,14 @@ class Disturbed(clients.Case):
         canbus.ip("link", "set", "dev", bus, "up")
         up_by = time.time()
         supervisor.wait_for("fault", name="BUS_OFF", active=False)
-        known = len(supervisor.events("state"))
         time.sleep(1.1)  # whatever was fresh before is not any more
+        self.assertEqual(supervisor.states()[-1], "TRIPPED")
         self.healthy(bus)
-        self.until(lambda: len(supervisor.states()) >= known and supervisor.states()[-1] == "SAFE", "SAFE in the end")
+        self.until(lambda: supervisor.states()[-1] == "SAFE", "SAFE in the end")
         time.sleep(0.5)
         # It may be SAFE for as long as the last frames are fresh, and is again when the vehicle is back.
         self.assertEqual(supervisor.story()[:3], [("INIT", None), ("STANDBY", None), ("TRIPPED", "BUS_OFF")])
-        self.assertEqual(set(supervisor.story()[3:]), {("SAFE", None), ("TRIPPED", None)} & set(supervisor.story()[3:]))
-        self.assertEqual(supervisor.states()[-1], "SAFE")
+        self.assertIn(supervisor.story()[3:], ([("SAFE", None)], [("SAFE", None), ("TRIPPED", None), ("SAFE", None)]))
         self.assertEqual(self.outputs(supervisor), [False, True, False])
         sent = self.supervisors_frames(bus)
         self.assertEqual([frame for frame in sent if down_by < frame.at < up_from], [])

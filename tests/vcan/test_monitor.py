@@ -2,6 +2,7 @@
 
 Bytes are written out from docs/protocol.md.
 """
+import re
 import signal
 import subprocess
 import threading
@@ -56,7 +57,6 @@ class Case(canbus.Case):
         self.addCleanup(stop)
         return flood
 
-
     def say_until(self, monitor, bus, can_id, data, expression):
         """Send a frame until the monitor, which may just be starting, prints this."""
         for _ in range(100):
@@ -69,19 +69,22 @@ class Case(canbus.Case):
 
 
 class InAFlood(Case):
-    def test_processor_time_and_keys(self):
-        flood = self.flood()
-        for width, height in ((80, 24), (160, 50)):
-            with self.subTest(width=width, height=height):
-                self.measure(flood, self.terminal("monitor", "--can", "vcan0", width=width, height=height))
+    """When another program takes the processor, it is measured again (canbus.Case)."""
 
-    def measure(self, flood, terminal):
+    def test_processor_time_and_keys_on_80_by_24(self):
+        self.measure(80, 24)
+
+    def test_processor_time_and_keys_on_160_by_50(self):
+        self.measure(160, 50)
+
+    def measure(self, width, height):
+        flood, terminal = self.flood(), self.terminal("monitor", "--can", "vcan0", width=width, height=height)
         terminal.wait_for(rb"INIT")
         begin, used, sent = time.monotonic(), seconds_used(terminal.process.pid), flood.sent
         while time.monotonic() < begin + 10:
             terminal.read(0.1)
         took = time.monotonic() - begin
-        share = (seconds_used(terminal.process.pid) - used) / took
+        used = seconds_used(terminal.process.pid) - used
         rate = (flood.sent - sent) / took
         answers = []
         for expected in [rb"back", rb"help"] * 5:
@@ -89,13 +92,13 @@ class InAFlood(Case):
             pressed = time.monotonic()
             terminal.press(b"h")
             answers.append(terminal.wait_for(expected) - pressed)
-        print("\n%d frames/s: %.1f %% of a core; keys answered within %.0f ms" % (rate, 100 * share, 1000 * max(answers)))
+        print("\n%d frames/s: %.1f %% of a core; keys answered within %.0f ms" % (rate, 100 * used / took, 1000 * max(answers)))
         self.assertGreater(rate, 0.9 * FLOOD)
-        self.assertLess(share, CPU)
-        self.assertLess(max(answers), KEY_S)
+        self.at_most(CPU * took, used, "the monitor's work of %.0f s" % took)
+        self.at_most(KEY_S, max(answers), "the answer to a key")
         terminal.press(b"q")
         self.assertEqual(terminal.end(), (0, ""))
-        self.assertNotIn(b"lost", terminal.seen)
+        self.assertEqual(re.findall(rb"[^\x1b]*lost[^\x1b]*", terminal.written), [])
 
 
 class Interface(Case):
@@ -148,6 +151,24 @@ class Record(Case):
         monitor.wait_line("363h vehicle_status late")
         self.assertEqual(bus.listen(1), [])
         self.assertEqual(monitor.end(), 0)
+
+
+class Gateway(Case):
+    def test_both_sides_are_heard_and_nothing_is_sent(self):
+        vehicle, ai = self.bus("vcan0"), self.bus("vcan1")
+        monitor = self.start("monitor", "--can", "vcan0", "--ai-can", "vcan1", "--shadow")
+        self.say_until(monitor, vehicle, 0x123, [1], "vcan0 +123h received, no message of the protocol")
+        ai.send(0x124, [1])
+        monitor.wait_line("vcan1 +124h received, no message of the protocol")
+        vehicle.send(0x363, [0, 0, 0, 0, 0, 0, 0x40, 1])  # a gateway that sends would pass it on
+        ai.send(0x168, [8, 0, 0, 0, 0, 0, 0, 0])
+        monitor.wait_line("363h vehicle_status late")
+        monitor.wait_line("ai +168h gear_command silent: no frame for 350 ms")
+        vehicle.send(0x168, [8, 0, 0, 0, 0, 0, 0, 0])  # on the AI side it would be a command
+        monitor.wait_line("shadow .*FOREIGN_COMMAND_SENDER")
+        self.assertEqual((vehicle.listen(1), ai.listen(1)), ([], []))
+        self.assertEqual((monitor.end(), monitor.text("stderr")),
+                         (0, "host_sim: not the default: topology: gateway (default shared)\n"))
 
 
 class StatusFrame(Case):

@@ -90,7 +90,7 @@ class Page(unittest.TestCase):
             self.show()
             figures.append(self.run_script("performance.getEntriesByName('first-contentful-paint')[0].startTime"))
         print(f"\nfirst picture after {min(figures):.0f} ms", end=" ")
-        self.assertLess(min(figures), 3000)  # the goal is 1000; a busy machine takes longer
+        self.assertLess(min(figures), 1000)
         self.wait("agv.run.now > 100")
         self.assertTrue(all(url.startswith(self.address) for url in self.browser.requests()), self.browser.requests())
         self.clean()

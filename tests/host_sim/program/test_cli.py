@@ -14,10 +14,6 @@ LOG = traffic.log(traffic.frames(100))
 
 
 class Front(hostsim.Case):
-    def commands(self):
-        text = self.run_good("--help").stdout
-        return re.findall(r"^  ([a-z]+) {2,}\S", text, re.MULTILINE)
-
     def test_version_is_one_line(self):
         result = self.run_good("--version")
         self.assertRegex(result.stdout, r"\Ahost_sim \d+\.\d+\.\d+\n\Z")
@@ -99,7 +95,7 @@ class Examples(hostsim.Case):
     def test_each_one(self):
         path = "%s:%s" % (os.path.dirname(hostsim.PROGRAM), os.environ["PATH"])
         less = re.compile("|".join(self.LESS))
-        for command in Front.commands(self):
+        for command in self.commands():
             examples = self.examples(command)
             self.assertIn(len(examples), (2, 3), command)
             alone = [line for line in examples if "--can" not in line and "--bus" not in line]

@@ -151,9 +151,13 @@ class Lines(hostsim.Case):
         self.assertIn("      1.007 s  shadow      ACTIVE -> TRIPPED: STEERING_COMMAND_TIMEOUT", lines)
 
     def test_speed(self):
-        begin = time.monotonic()
-        self.monitor("--log", EXAMPLE, "--speed", "4")
-        self.assertGreater(time.monotonic() - begin, 1.394 / 4)
+        seconds = []
+        for _ in range(3):
+            begin = time.monotonic()
+            self.monitor("--log", EXAMPLE, "--speed", "4")
+            seconds.append(time.monotonic() - begin)
+        self.assertGreater(min(seconds), 1.394 / 4)
+        self.assertLess(min(seconds), 1.394)  # what it takes at its own speed; a busy machine needs more than a quarter of it
 
     def test_a_log_on_standard_input(self):
         done = subprocess.run([hostsim.PROGRAM, "monitor", "--log", "-", "--speed", "max"], input=EXAMPLE.read_bytes(),

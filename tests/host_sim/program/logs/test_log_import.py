@@ -32,8 +32,10 @@ class OtherPrograms(Case):
         self.write("plain.log", self.log)
 
     def convert(self, *command):
+        """Times are read as UTC, and log2asc writes local ones."""
         with open(self.folder / "plain.log", "rb") as plain:
-            return subprocess.run(command, cwd=self.folder, check=True, stdout=subprocess.PIPE, stdin=plain).stdout
+            return subprocess.run(command, cwd=self.folder, check=True, stdout=subprocess.PIPE, stdin=plain,
+                                  env={**os.environ, "TZ": "UTC"}).stdout
 
     def test_gzip(self):
         packed = self.convert("gzip", "-c")

@@ -170,7 +170,7 @@ ZTEST(port_hardware, test_a_flipped_bit_of_the_flash_is_found_in_the_background_
     }
 }
 
-/* Shows: HW-4 */
+/* For docs/firmware.md: it prints instructions, and compares them with no limit. */
 ZTEST(port_hardware, test_times_of_the_self_test) {
     const zephyr_hal_config_t config = {.memory_count = 0u};
     uint32_t at[6] = {k_cycle_get_32()};

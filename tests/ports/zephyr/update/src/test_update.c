@@ -65,7 +65,8 @@ static void start_trial(void) {
     flash_area_close(slot);
 }
 
-/* Before the other tests: an image is confirmed once in a run. Shows: HW-6 */
+/* Before the other tests: an image is confirmed once in a run. */
+/* Shows: HW-6 */
 ZTEST(update, test_a_trial_is_confirmed_at_the_first_standby) {
     start_trial();
     for (size_t i = 0u; states[i] != AGV_STATE_STANDBY; i++) {
