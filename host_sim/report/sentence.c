@@ -137,7 +137,10 @@ static void say_phrase(char text[SENTENCE_SIZE], const why_trip_t *trip) {
         say_message(text, trip);
         say(text, " came in a form that the protocol does not have");
     } else if (never_came(trip)) {
-        const char *const verb = strstr(phrase, NO_LONGER);
+        const char *verb = phrase;
+        while (strncmp(verb, NO_LONGER, strlen(NO_LONGER)) != 0) {
+            verb++;
+        }
         say(text, "%.*snever %s", (int)(verb - phrase), phrase, &verb[strlen(NO_LONGER)]);
     } else {
         say(text, "%s", phrase);
