@@ -328,6 +328,18 @@ void test_the_command_that_comes_too_fast(void) {
     TEST_ASSERT_EQUAL_INT64(10, trip->limit);
 }
 
+/* 12.6 ms are 12 or 13 ms of whole stamps. Half the cycle of 065h is 12.5 ms: two gaps in five are too short. */
+void test_gaps_are_measured_in_whole_ms(void) {
+    hal_can_frame_t frame = {.id = 0x065, .length = 8};
+    for (uint64_t i = 0; i <= 90; i++) {
+        why_frame(why, HAL_CAN_VEHICLE, &frame, 1000000 + (i * 12600));
+    }
+    const why_trip_t *trip = trip_by(AGV_FAULT_COMMAND_TOO_FAST, 2134);
+    TEST_ASSERT_EQUAL(AGV_MSG_STEERING_COMMAND, trip->message);
+    TEST_ASSERT_EQUAL_UINT64(1012600, trip->cause_us);
+    TEST_ASSERT_EQUAL_UINT64(1000000, trip->last_good_us);
+}
+
 void test_an_error_frame_shows_a_bus_off(void) {
     const hal_can_frame_t error = {.id = 0x40, .length = 8, .flags = HAL_CAN_ERROR};
     why_frame(why, HAL_CAN_VEHICLE, &error, 2000500);
