@@ -268,6 +268,7 @@ static void on_state(why_t *why, const agv_event_t *event, uint64_t t_us) {
         why->start_us = t_us;
         why->was_tripped = false;
         why->startup_missing = 0;
+        why->facts.vcu_speed_seen = false;
     }
     if (why->state == AGV_STATE_INIT) {
         why_init_end(why, t_us);

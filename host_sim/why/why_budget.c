@@ -56,7 +56,7 @@ static bool speeds_differ(const why_t *why) {
     const int32_t wheels = abs(left + right) / 2;
     const int32_t vcu = ((int32_t)why->facts.vcu_speed * MM_S_PER_18_COUNTS) / 18;
     const int32_t larger = (wheels > vcu) ? wheels : vcu;
-    return why->facts.speed_known && why->facts.mode_known &&
+    return why->facts.speed_known && why->facts.vcu_speed_seen &&
            (abs(wheels - vcu) > SPEED_SLACK_MM_S + (larger / SPEED_SHARE));
 }
 
@@ -266,6 +266,7 @@ static void take_vehicle(why_t *why, const uint8_t *data) {
         why->began_in_autopilot = status.autopilot_mode;
     }
     why->facts.vcu_speed = status.speed_m_per_h;
+    why->facts.vcu_speed_seen = why->facts.vcu_speed_seen || (status.speed_m_per_h != 0);
     why->facts.mode_bits = data[6];
     why->facts.mode_known = true;
     why->manual_was_seen = why->manual_was_seen || status.manual_mode;
@@ -297,14 +298,14 @@ static void take_status(why_t *why, agv_message_t message, const why_evidence_t 
     }
 }
 
-/** Whether the commands are known with which a budget compares: before, no frame is a good one. */
-static bool has_commands(const why_t *why, const row_t *row) {
+/** Whether that is known with which a budget compares: before, no frame is a good one. */
+static bool is_comparable(const why_t *why, const row_t *row) {
     for (uint32_t command = 0; command < AGV_COMMAND_COUNT; command++) {
         if (((row->messages & BIT_OF(command)) != 0) && !why->facts.command_known[command]) {
             return false;
         }
     }
-    return true;
+    return why->facts.vcu_speed_seen || (row->fault != AGV_FAULT_SPEED_IMPLAUSIBLE);
 }
 
 /** Evaluate what depends on a message, after it was read. */
@@ -324,7 +325,7 @@ static void evaluate(why_t *why, agv_message_t message, const why_evidence_t *fr
         }
         tracker->bad_since_us = (bad && !tracker->bad) ? frame->t_us : tracker->bad_since_us;
         tracker->bad = bad;
-        tracker->is_comparable = has_commands(why, &rows[i]);
+        tracker->is_comparable = is_comparable(why, &rows[i]);
     }
 }
 

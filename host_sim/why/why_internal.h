@@ -62,6 +62,7 @@ typedef struct {
 /** What vehicle and AI computer say, as far as budgets need it. */
 typedef struct {
     bool angle_known, command_known[AGV_COMMAND_COUNT], mode_known, speed_known;
+    bool vcu_speed_seen; /**< 363h reported a speed above 0 in this run of the supervisor (SUP-12) */
     uint32_t angle_raw, angle_command_raw;
     uint32_t throttle, throttle_command;
     uint32_t gear, gear_command;

@@ -103,6 +103,9 @@ static const row_t ROWS[] = {
      {{0x363, AUTOPILOT, 1000}, {0x065, "\x28\x23", 1020}, {0x065, "\x51\x46", 1045}},
      {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, 1045, WHY_VALUE, 1045, 1020, 9000, "ddeg",
       NULL}}, /* on the wire 0 is -900.0 deg */
+    {"the speeds are compared from the first one of 363h above 0 on: 1 m/h against 1000 mm/s",
+     {{0x101, "\xE8\x03\0\0\xE8\x03", 1990}, {0x363, "\0\0\0\0\0\0\x40", 2000}, {0x363, "\x01\0\0\0\0\0\x40\x01", 3000}},
+     {AGV_FAULT_SPEED_IMPLAUSIBLE, 4000, WHY_BUDGET, 3000, NONE, 1000, "ms", NULL}},
     {"a bit of 363h that counts while engaged only began with the engagement",
      {{0x363, "\0\0\0\0\0\0\x40", 900},
       {0x363, "\0\0\0\0\x08\0\x40\x01", 910},

@@ -203,6 +203,18 @@ void test_a_bit_that_does_not_count_has_not_begun(void) {
     TEST_ASSERT_NULL(pending(AGV_FAULT_VCU_AI_CAN_LOST));
 }
 
+void test_a_vcu_that_reports_no_speed_is_not_compared(void) {
+    feed_state(why, AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_FAULT_NONE, 900);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x101, "\xE8\x03\0\0\xE8\x03\0", 1000); /* 1000 mm/s */
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\0\0\x40", 1010);
+    why_end(why, 1500000);
+    TEST_ASSERT_NULL(pending(AGV_FAULT_SPEED_IMPLAUSIBLE));
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\x01\0\0\0\0\0\x40", 1520);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\0\0\x40", 1530);
+    why_end(why, 1600000);
+    TEST_ASSERT_EQUAL_STRING("SPEED_IMPLAUSIBLE had begun at 1.520 s", pending(AGV_FAULT_SPEED_IMPLAUSIBLE));
+}
+
 void test_the_limit_of_moving_while_safe_is_no_setting(void) {
     feed_trip(why, AGV_FAULT_EMERGENCY_STOP, 2000);
     feed_fault(why, AGV_FAULT_MOVING_WHILE_SAFE, AGV_CLASS_TRIP, true, 7000);
