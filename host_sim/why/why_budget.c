@@ -119,7 +119,7 @@ uint64_t why_budget_us(const why_t *why, agv_fault_t fault) {
 
 /** Count the time since the last call: a bad microsecond adds 2, a good one takes 1. */
 static void count(const why_t *why, const row_t *row, why_tracker_t *tracker, uint64_t t_us) {
-    const uint64_t judged_us = row->judged ? why->engagement.judged_us : 0;
+    const uint64_t judged_us = row->judged ? why_judged_us(why) : 0;
     const uint64_t from_us = (tracker->since_us > judged_us) ? tracker->since_us : judged_us;
     const uint64_t full = 2 * (uint64_t)US_PER_MS * agv_config_get(&why->config, row->setting);
     if (from_us < t_us) {
@@ -202,7 +202,7 @@ static void follow_progress(why_t *why, agv_fault_t fault, why_progress_t *progr
     follow_steps_back(progress, tracker->bad, full_us, t_us);
     restart_progress(tracker, progress);
     const bool steps_back_count = progress->steps_back_us != 0;
-    const bool judged = t_us >= why->engagement.judged_us;
+    const bool judged = t_us >= why_judged_us(why);
     add_step(&progress->gained, step, 0, judged, steps_back_count);
     if (steps_back_count) {
         add_step(&progress->gained_beyond, step, step.limit, judged, true);

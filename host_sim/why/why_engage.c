@@ -10,6 +10,10 @@ void why_engage_start(why_t *why) {
     why->engagement.judged_us = WHY_NEVER;
 }
 
+uint64_t why_judged_us(const why_t *why) {
+    return ((why->facts.mode_bits & AGV_VCU_FLAG_AUTOPILOT) != 0) ? why->engagement.judged_us : WHY_NEVER;
+}
+
 /** Whether an engagement follows the one before so soon that it is the same. */
 static bool continues(const why_t *why, uint64_t t_us) {
     const uint64_t reengage_us = (uint64_t)why->config.reengage_ms * US_PER_MS;

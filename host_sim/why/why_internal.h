@@ -79,7 +79,7 @@ typedef struct {
     uint32_t off_frames;
     uint64_t began_us;                      /**< of the last one; WHY_NEVER */
     uint64_t ended_us;                      /**< of the last one; WHY_NEVER */
-    uint64_t judged_us;                     /**< from here on it is judged; WHY_NEVER: not engaged */
+    uint64_t judged_us;                     /**< the grace time ends; WHY_NEVER: not engaged */
     why_evidence_t frames[WHY_ENGAGEMENTS]; /**< of the last ones, a ring */
     uint32_t count;
     uint64_t manual_us;    /**< how long manual was reported while engaged, less half of the other time */
@@ -99,6 +99,7 @@ struct why {
     why_message_t messages[AGV_MSG_COUNT];
     why_tracker_t trackers[AGV_FAULT_COUNT];
     why_tracker_t too_fast[AGV_COMMAND_COUNT];
+    agv_fault_t eps_mode; /**< EPS_MODE_*: after the last bad mode that counted */
     why_facts_t facts;
     why_engagement_t engagement;
     why_evidence_t bad_command; /**< the last one; t_us WHY_NEVER: none */
@@ -184,6 +185,8 @@ const why_tracker_t *why_tracker(const why_t *why, agv_fault_t fault);
 
 /** The engagement (why_engage.c). */
 void why_engage_start(why_t *why);
+/** From when on it is judged; WHY_NEVER: it is not, also because the last 363h does not report autopilot. */
+uint64_t why_judged_us(const why_t *why);
 void why_engage_frame(why_t *why, const why_evidence_t *frame);
 /** A change of state of a flight recorder, which has no frames: it was engaged while it was ACTIVE. */
 void why_engage_state(why_t *why, const agv_event_t *event, uint64_t t_us);

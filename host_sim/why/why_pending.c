@@ -47,8 +47,8 @@ static bool add_silence(text_t *text, const why_t *why, agv_fault_t fault) {
 }
 
 static bool add_tracked(text_t *text, const why_t *why, agv_fault_t fault) {
-    const why_tracker_t *tracker = &why->trackers[fault];
-    if ((tracker->value == 0) || !tracker->bad) {
+    const why_tracker_t *tracker = why_tracker(why, fault);
+    if ((tracker == NULL) || !tracker->bad) {
         return false;
     }
     text_add(text, "%s had begun at ", agv_fault_name(fault));

@@ -215,6 +215,33 @@ void test_a_vcu_that_reports_no_speed_is_not_compared(void) {
     TEST_ASSERT_EQUAL_STRING("SPEED_IMPLAUSIBLE had begun at 1.520 s", pending(AGV_FAULT_SPEED_IMPLAUSIBLE));
 }
 
+void test_bad_modes_at_the_end_are_named_after_the_last_one(void) {
+    feed_state(why, AGV_STATE_INIT, AGV_STATE_ACTIVE, AGV_FAULT_NONE, 900);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\0\0\x80", 1000);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\xFF\0\0\0", 1500);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\0\0\0\0", 1510);
+    why_end(why, 1515000);
+    TEST_ASSERT_NULL(pending(AGV_FAULT_EPS_MODE_OFF));
+    TEST_ASSERT_NULL(pending(AGV_FAULT_EPS_MODE_INVALID));
+    TEST_ASSERT_EQUAL_STRING("EPS_MODE_NOT_ANGLE had begun at 1.500 s", pending(AGV_FAULT_EPS_MODE_NOT_ANGLE));
+}
+
+/* Less than mode_frames 363h without autopilot: it is engaged, but not judged. */
+void test_what_is_not_judged_has_not_begun(void) {
+    feed_state(why, AGV_STATE_INIT, AGV_STATE_ACTIVE, AGV_FAULT_NONE, 900);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\0\0\x80", 1000);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\0\0\0", 1600);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\0\0\0\0", 1601);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x0A3, "\x08\0\0\0\0\0\0", 1602);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x050, "\x64\0\0\0\0\0\0", 1603); /* throttle in P */
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\0\0\x80", 1610);
+    why_end(why, 1611000);
+    TEST_ASSERT_NULL(pending(AGV_FAULT_EPS_MODE_NOT_ANGLE));
+    TEST_ASSERT_NULL(pending(AGV_FAULT_THROTTLE_IN_PARK));
+    feed_frame(why, HAL_CAN_VEHICLE, 0x0A3, "\x08\0\0\0\0\0\0", 1612);
+    TEST_ASSERT_EQUAL_STRING("THROTTLE_IN_PARK had begun at 1.603 s", pending(AGV_FAULT_THROTTLE_IN_PARK));
+}
+
 void test_the_limit_of_moving_while_safe_is_no_setting(void) {
     feed_trip(why, AGV_FAULT_EMERGENCY_STOP, 2000);
     feed_fault(why, AGV_FAULT_MOVING_WHILE_SAFE, AGV_CLASS_TRIP, true, 7000);
