@@ -147,6 +147,15 @@ static void say_phrase(char text[SENTENCE_SIZE], const why_trip_t *trip) {
     }
 }
 
+/** A flight recorder may not know since when. */
+static void say_since(char text[SENTENCE_SIZE], const why_trip_t *trip) {
+    char time[TIME_SIZE];
+    if (trip->cause_us != WHY_NEVER) {
+        say(text, " from %s%s on", trip->from_engagement ? "the engagement at " : "", at(trip->cause_us, time));
+    }
+    say(text, ".");
+}
+
 static void say_silence(char text[SENTENCE_SIZE], const why_trip_t *trip) {
     const bool is_stuck = trip->kind == WHY_STUCK;
     char time[TIME_SIZE];
@@ -158,8 +167,8 @@ static void say_silence(char text[SENTENCE_SIZE], const why_trip_t *trip) {
     } else if (trip->last_good_us == WHY_NEVER) {
         say(text, is_stuck ? "The alive counter of " : "");
         say_message(text, trip);
-        say(text, " did not %s from %s%s on.", is_stuck ? "change" : "come",
-            trip->from_engagement ? "the engagement at " : "", at(trip->cause_us, time));
+        say(text, " did not %s", is_stuck ? "change" : "come");
+        say_since(text, trip);
     } else {
         say(text, is_stuck ? "The alive counter of " : "");
         say_message(text, trip);

@@ -327,6 +327,9 @@ static void on_fault(why_t *why, const agv_event_t *event, uint64_t t_us) {
     if (event->a >= AGV_FAULT_COUNT) {
         return;
     }
+    if ((event->a == AGV_FAULT_AI_COMMAND_OUT_OF_RANGE) && (event->c != 0)) {
+        why->bad_command_event = *event;
+    }
     if (event->c != 0) {
         raise(why, (agv_fault_t)event->a, (agv_fault_class_t)event->b, t_us);
     } else {

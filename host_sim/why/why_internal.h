@@ -94,7 +94,8 @@ struct why {
     bool is_gateway;
     bool is_recording;
     bool is_recorder;
-    const agv_event_t *snapshot; /**< of a flight recorder: the event in hand; NULL: frames are received */
+    const agv_event_t *snapshot;   /**< of a flight recorder: the event in hand; NULL: frames are received */
+    agv_event_t bad_command_event; /**< of a flight recorder: the last that raised AI_COMMAND_OUT_OF_RANGE */
 
     why_message_t messages[AGV_MSG_COUNT];
     why_tracker_t trackers[AGV_FAULT_COUNT];
