@@ -87,6 +87,22 @@ typedef struct {
     why_evidence_t manual; /**< the first of those that reported manual */
 } why_engagement_t;
 
+/** A confirmation of the safe state. */
+typedef struct {
+    uint64_t sum_us;   /**< for so long it was missing in all */
+    uint64_t began_us; /**< valid while the sum is not 0 */
+} why_missing_t;
+
+/** Both confirmations, since the trip. */
+typedef struct {
+    why_missing_t off;
+    why_missing_t park;
+    uint64_t at_us;      /**< counted up to here */
+    uint64_t missing_us; /**< one of them was missing last */
+    uint64_t park_sent_us;
+    bool is_park_sent;
+} why_confirmation_t;
+
 /** All that is known. */
 struct why {
     agv_config_t config;
@@ -109,9 +125,8 @@ struct why {
     why_evidence_t status_id; /**< a frame with the identifier of the status frame */
     why_evidence_t other_set; /**< the first frame with an identifier of the other set */
     agv_message_t other_message;
-    why_evidence_t error;  /**< the last error frame */
-    why_evidence_t moving; /**< the first 101h of a movement */
-    bool is_moving;
+    why_evidence_t error; /**< the last error frame */
+    why_confirmation_t confirmation;
     why_evidence_t safe_frame; /**< the last frame sent that could be the first safe one */
 
     uint8_t state;
@@ -147,6 +162,9 @@ static inline bool why_is_command(agv_message_t message) {
     return (uint32_t)message < AGV_COMMAND_COUNT;
 }
 
+/** The trip that is not over; NULL: none. */
+const why_trip_t *why_open_trip(const why_t *why);
+
 /** The last frames of a message. @param back 0 = the last one @return NULL: there are not so many */
 const why_evidence_t *why_history(const why_message_t *message, uint32_t back);
 
@@ -159,6 +177,8 @@ why_evidence_t why_no_evidence(void);
 /** @name Arrival and alive counters (why_life.c). @{ */
 void why_life_start(why_t *why);
 void why_life_frame(why_t *why, agv_message_t message, const why_evidence_t *frame);
+/** When the deadline of a status message expires; 0: it is not running. */
+uint64_t why_fresh_until_us(const why_t *why, agv_message_t message);
 /** Count a frame of a message that does not restart its deadline. */
 void why_life_refuse(why_t *why, agv_message_t message, const why_evidence_t *frame);
 /** @} */
@@ -191,6 +211,19 @@ uint64_t why_judged_us(const why_t *why);
 void why_engage_frame(why_t *why, const why_evidence_t *frame);
 /** A change of state of a flight recorder, which has no frames: it was engaged while it was ACTIVE. */
 void why_engage_state(why_t *why, const agv_event_t *event, uint64_t t_us);
+
+/** @name The confirmations of the safe state (why_confirm.c). @{ */
+/** Begin anew, at a trip. */
+void why_confirm_start(why_t *why, uint64_t t_us);
+void why_confirm_park_sent(why_t *why, uint64_t t_us);
+/** Count the time up to now. */
+void why_confirm_advance(why_t *why, uint64_t t_us);
+/** Until when autopilot off, or P, is confirmed; not later than now: it is not. */
+uint64_t why_off_until_us(const why_t *why);
+uint64_t why_park_until_us(const why_t *why);
+/** Which of the two was missing for too long. @return false: autopilot off */
+bool why_confirm_waits_for_park(const why_t *why, uint64_t t_us);
+/** @} */
 
 /** @name The conditions for leaving INIT (why_init.c). @{ */
 void why_init_start(why_t *why);

@@ -104,7 +104,9 @@ static const row_t ROWS[] = {
      {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, 1045, WHY_VALUE, 1045, 1020, 9000, "ddeg",
       NULL}}, /* on the wire 0 is -900.0 deg */
     {"the speeds are compared from the first one of 363h above 0 on: 1 m/h against 1000 mm/s",
-     {{0x101, "\xE8\x03\0\0\xE8\x03", 1990}, {0x363, "\0\0\0\0\0\0\x40", 2000}, {0x363, "\x01\0\0\0\0\0\x40\x01", 3000}},
+     {{0x101, "\xE8\x03\0\0\xE8\x03", 1990},
+      {0x363, "\0\0\0\0\0\0\x40", 2000},
+      {0x363, "\x01\0\0\0\0\0\x40\x01", 3000}},
      {AGV_FAULT_SPEED_IMPLAUSIBLE, 4000, WHY_BUDGET, 3000, NONE, 1000, "ms", NULL}},
     {"a bit of 363h that counts while engaged only began with the engagement",
      {{0x363, "\0\0\0\0\0\0\x40", 900},
@@ -199,16 +201,16 @@ void test_extended_frames_during_a_silence(void) {
 void test_a_command_that_the_gateway_withheld(void) {
     config.topology = AGV_TOPOLOGY_GATEWAY;
     begin_anew();
-    feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 1000);
+    feed_mode(why, 0x80, 1000);
     for (uint64_t i = 0; i < 6; i++) { /* 363h reports manual after that of 1010 */
         feed_frame(why, HAL_CAN_AI, 0x065, "\0\0\0\0\0\0\0", 1010 + (i * 25));
-        feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 1020 + (i * 25));
-        feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\0\0\x40", 1030 + (i * 25));
+        feed_mode(why, 0x80, 1020 + ((i * 25) / 10 * 10));
+        feed_mode(why, 0x40, 1030 + ((i * 25) / 10 * 10));
     }
     const why_trip_t *trip = trip_by(AGV_FAULT_STEERING_COMMAND_TIMEOUT, 1136);
     TEST_ASSERT_EQUAL_UINT64(1010000, trip->last_good_us);
     TEST_ASSERT_EQUAL_UINT64(1035000, trip->cause_us);
-    feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 1170);
+    feed_mode(why, 0x80, 1170);
     feed_frame(why, HAL_CAN_AI, 0x065, "\0\0\0\0\0\0\0", 1180); /* does not end it: TRIPPED passes none on */
     check_words(trip,
                 "065h steering_command was not passed on: last at 1.010 s, deadline 125 ms, none since; 5 frames came "

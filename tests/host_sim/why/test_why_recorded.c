@@ -144,6 +144,29 @@ void test_a_score_began_at_the_latest(void) {
                 "latest");
 }
 
+/* Its last payload confirms that the autopilot is off. */
+void test_a_silent_vcu_did_not_confirm(void) {
+    (void)trip_of(AGV_FAULT_VCU_HEARTBEAT_LOST, ALL, NOT_ACTIVE, 2051);
+    feed_fault(why, AGV_FAULT_VCU_HEARTBEAT_LOST, AGV_CLASS_TRIP, true, 2051);
+    event.seen = ALL;
+    event.frames[AGV_MSG_GEAR_STATUS][0] = AGV_GEAR_P;
+    event.frames[AGV_MSG_VEHICLE_STATUS][6] = AGV_VCU_FLAG_MANUAL;
+    record(AGV_EVENT_FAULT, AGV_FAULT_SAFE_STATE_UNCONFIRMED, AGV_CLASS_TRIP, 1, 2551);
+    check_words(why_trip(why, 1),
+                "363h vehicle_status did not confirm that the autopilot is off for 500 ms, from 2.051 s "
+                "on at the latest");
+}
+
+/* With P, and the first of three 363h without autopilot. */
+void test_an_engagement_that_has_not_ended_was_not_confirmed(void) {
+    (void)trip_of(AGV_FAULT_EMERGENCY_STOP, ALL, 1000, 2000);
+    event.seen = ALL;
+    event.frames[AGV_MSG_GEAR_STATUS][0] = AGV_GEAR_P;
+    event.frames[AGV_MSG_VEHICLE_STATUS][6] = AGV_VCU_FLAG_MANUAL;
+    record(AGV_EVENT_FAULT, AGV_FAULT_SAFE_STATE_UNCONFIRMED, AGV_CLASS_TRIP, 1, 2500);
+    TEST_ASSERT_EQUAL(AGV_MSG_VEHICLE_STATUS, why_trip(why, 1)->message);
+}
+
 void test_the_limit_of_a_command(void) {
     event.frames[AGV_MSG_STEERING_COMMAND][0] = 0x51; /* 18001 */
     event.frames[AGV_MSG_STEERING_COMMAND][1] = 0x46;
