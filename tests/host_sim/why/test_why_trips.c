@@ -196,6 +196,15 @@ void test_the_usual_cycle_of_a_slow_sender_is_no_silence(void) {
                              pending(AGV_FAULT_AI_HEARTBEAT_LOST));
 }
 
+void test_an_ai_computer_that_never_came_has_begun_to_be_missing(void) {
+    feed_state(why, AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_FAULT_NONE, 900);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\0\0\x80", 1000);
+    why_end(why, 1300000);
+    TEST_ASSERT_EQUAL_STRING("43Fh turn_signal_command was silent for 300 ms, deadline 500 ms",
+                             pending(AGV_FAULT_AI_HEARTBEAT_LOST));
+    TEST_ASSERT_NULL(pending(AGV_FAULT_AI_HEARTBEAT_STUCK));
+}
+
 void test_a_bit_that_does_not_count_has_not_begun(void) {
     feed_state(why, AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_FAULT_NONE, 900);
     feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\x08\0\x40", 1000);
