@@ -83,10 +83,12 @@ static void explain_silence(const why_t *why, why_trip_t *trip) {
     if (trip->refused.count > 0) {
         why_show(trip, &message->refused.first);
     }
-    if (why_is_command(trip->message) && (engaged_us != WHY_NEVER) && (trip->cause_us < engaged_us)) {
+    const bool is_ai_heartbeat = trip->message == AGV_MSG_TURN_SIGNAL_COMMAND; /* once seen, it counts in manual too */
+    const bool from_engagement = why_is_command(trip->message) && !(is_ai_heartbeat && trip->was_heard);
+    if (from_engagement && (engaged_us != WHY_NEVER) && (trip->cause_us < engaged_us)) {
         trip->cause_us = engaged_us;
         trip->from_engagement = true;
-        if ((trip->message == AGV_MSG_TURN_SIGNAL_COMMAND) && (message->count == 0)) {
+        if (is_ai_heartbeat) {
             set_limit(why, trip, AGV_SETTING_ai_never_seen_timeout_ms, "ms");
         }
     }
