@@ -117,7 +117,7 @@ typedef struct {
     uint64_t lost_us;   /**< when it lost the last ones */
     bool is_down[HAL_CAN_SIDES];
     engagement_t engagement;
-    uint64_t engaged_us; /**< when the last engagement began */
+    uint64_t engaged_us; /**< when the last engagement began, or was continued */
     size_t row_count;
     monitor_row_t rows[MONITOR_ROWS_MAX];
     uint8_t row_of[HAL_CAN_SIDES][AGV_ID_MAX + 1]; /**< index + 1; 0: none */

@@ -61,21 +61,24 @@ static bool counts(const monitor_t *monitor, const monitor_row_t *row) {
     return !is_command(row) || monitor->engagement.is_engaged || in_manual;
 }
 
-/** When a message is due. An engagement restarts the deadlines of the commands, but not that of a heartbeat. */
+/** When a message is due. An engagement that continues none restarts the deadlines of the commands, but not that of a heartbeat. */
 static uint64_t due_us(const monitor_t *monitor, const monitor_row_t *row) {
-    const bool restarts = is_command(row) && !row->has_counter && (monitor->engaged_us > row->last_us);
-    return (restarts ? monitor->engaged_us : row->last_us) + row->deadline_us;
+    const uint64_t began_us = monitor->engagement.began_us;
+    const bool restarts = is_command(row) && !row->has_counter && (began_us > row->last_us);
+    return (restarts ? began_us : row->last_us) + row->deadline_us;
 }
 
 static void begin_late(monitor_t *monitor, monitor_row_t *row) {
     const uint64_t due = due_us(monitor, row);
-    const bool was_due = row->is_silent && (monitor->engaged_us > due); /* a heartbeat that was silent already */
+    const bool was_due = row->is_silent && (monitor->engaged_us > due); /* it was silent already */
     const uint64_t at_us = was_due ? monitor->engaged_us : due;
     row->is_late = true;
     row->is_silent = false;
     row->was_late[0] = true;
     row->has_been_late = true;
-    monitor->engagement.is_engaged = monitor->engagement.is_engaged && !is_vcu(row); /* the loss of the VCU ends it */
+    if (is_vcu(row)) {
+        engagement_end(&monitor->engagement, at_us);
+    }
     say(monitor, row, at_us, MONITOR_BAD, "late: no frame for", (at_us - row->last_us) / US_PER_MS);
 }
 
@@ -151,8 +154,8 @@ static void take_counter(monitor_t *monitor, monitor_row_t *row, const uint8_t d
 /** Follow the mode. A VCU whose counter stands still counts as lost: it ends an engagement, and begins none. */
 static void follow_engagement(monitor_t *monitor, const monitor_row_t *row, uint64_t t_us) {
     if (is_vcu(row) && row->is_stuck) {
-        monitor->engagement = (engagement_t){.is_engaged = false};
-    } else if (is_vcu(row) && engagement_take(&monitor->engagement, &monitor->config, row->data[MODE_AT])) {
+        engagement_end(&monitor->engagement, t_us);
+    } else if (is_vcu(row) && engagement_take(&monitor->engagement, &monitor->config, row->data[MODE_AT], t_us)) {
         monitor->engaged_us = monitor->engagement.is_engaged ? t_us : monitor->engaged_us;
     } else {
         /* another message */

@@ -137,11 +137,23 @@ static void say_phrase(char text[SENTENCE_SIZE], const why_trip_t *trip) {
         say_message(text, trip);
         say(text, " came in a form that the protocol does not have");
     } else if (never_came(trip)) {
-        const char *const verb = strstr(phrase, NO_LONGER);
+        const char *verb = phrase;
+        while (strncmp(verb, NO_LONGER, strlen(NO_LONGER)) != 0) {
+            verb++;
+        }
         say(text, "%.*snever %s", (int)(verb - phrase), phrase, &verb[strlen(NO_LONGER)]);
     } else {
         say(text, "%s", phrase);
     }
+}
+
+/** A flight recorder may not know since when. */
+static void say_since(char text[SENTENCE_SIZE], const why_trip_t *trip) {
+    char time[TIME_SIZE];
+    if (trip->cause_us != WHY_NEVER) {
+        say(text, " from %s%s on", trip->from_engagement ? "the engagement at " : "", at(trip->cause_us, time));
+    }
+    say(text, ".");
 }
 
 static void say_silence(char text[SENTENCE_SIZE], const why_trip_t *trip) {
@@ -155,8 +167,8 @@ static void say_silence(char text[SENTENCE_SIZE], const why_trip_t *trip) {
     } else if (trip->last_good_us == WHY_NEVER) {
         say(text, is_stuck ? "The alive counter of " : "");
         say_message(text, trip);
-        say(text, " did not %s from %s%s on.", is_stuck ? "change" : "come",
-            trip->from_engagement ? "the engagement at " : "", at(trip->cause_us, time));
+        say(text, " did not %s", is_stuck ? "change" : "come");
+        say_since(text, trip);
     } else {
         say(text, is_stuck ? "The alive counter of " : "");
         say_message(text, trip);

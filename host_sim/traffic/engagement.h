@@ -13,7 +13,11 @@
 /** Begin with all zero: not engaged. */
 typedef struct {
     bool is_engaged;
+    bool is_continued;   /**< it followed the one before within `reengage_ms`: they are one (requirements.md, Words) */
+    bool has_begun;      /**< once at least */
     uint32_t off_frames; /**< 363h in a row without autopilot mode */
+    uint64_t began_us;   /**< of the last one; of the first one of those that are one */
+    uint64_t ended_us;
 } engagement_t;
 
 /**
@@ -21,6 +25,9 @@ typedef struct {
  * both modes the one before remains.
  * @return whether the engagement began or ended
  */
-bool engagement_take(engagement_t *engagement, const agv_config_t *config, uint8_t flags);
+bool engagement_take(engagement_t *engagement, const agv_config_t *config, uint8_t flags, uint64_t t_us);
+
+/** The VCU is lost: an engagement ends. */
+void engagement_end(engagement_t *engagement, uint64_t t_us);
 
 #endif

@@ -5,6 +5,7 @@
 
 #include "agv/codec.h"
 #include "common/message_facts.h"
+#include "text/units.h"
 #include "traffic/engagement.h"
 #include "traffic/watch.h"
 
@@ -32,8 +33,9 @@ struct traffic {
     size_t all_count;
     traffic_totals_t totals;
     engagement_t engagement;
-    uint64_t engaged_since_us;
-    uint64_t started_us; /**< when somebody began to listen */
+    uint64_t engaged_since_us;  /**< not interrupted */
+    const traffic_watch_t *vcu; /**< of 363h; NULL: it never came */
+    uint64_t started_us;        /**< when somebody began to listen */
 };
 
 traffic_t *traffic_new(const agv_config_t *config) {
@@ -119,7 +121,7 @@ static traffic_id_t *add_id(traffic_t *traffic, hal_can_side_t side, const hal_c
     traffic->all[traffic->all_count] = entry;
     traffic->all_count++;
     if ((entry->watch != NULL) && (entry->watch->when == TRAFFIC_ENGAGED) && traffic->engagement.is_engaged) {
-        watch_start(entry->watch, traffic->engaged_since_us);
+        watch_start(entry->watch, traffic->engagement.began_us);
     }
     return entry;
 }
@@ -184,18 +186,37 @@ static void end_engagement(traffic_t *traffic, uint64_t t_us) {
     traffic->totals.engaged_us += t_us - traffic->engaged_since_us;
 }
 
-/** Follow the mode that the VCU reports. */
+static uint64_t vcu_lost_us(const traffic_t *traffic) {
+    const traffic_watch_t *vcu = traffic->vcu;
+    return (vcu != NULL) ? vcu->since_us + ((uint64_t)vcu->deadline_ms * US_PER_MS) : 0;
+}
+
+/** A lost VCU ends an engagement, unless it is back so soon that it would be continued. */
+static void lose_vcu(traffic_t *traffic, uint64_t t_us) {
+    if (!traffic->engagement.is_engaged || (traffic->vcu == NULL) || !traffic->vcu->is_running) {
+        return;
+    }
+    const uint64_t over_us = vcu_lost_us(traffic) + ((uint64_t)traffic->config.reengage_ms * US_PER_MS);
+    if (t_us > over_us) {
+        engagement_end(&traffic->engagement, vcu_lost_us(traffic));
+        end_engagement(traffic, over_us);
+    }
+}
+
+/** Follow the mode that the VCU reports. A VCU whose counter stands still begins no engagement. */
 static void take_mode(traffic_t *traffic, uint8_t flags, uint64_t t_us) {
-    if (!engagement_take(&traffic->engagement, &traffic->config, flags)) {
+    const bool is_lost = t_us > vcu_lost_us(traffic);
+    if (is_lost || !engagement_take(&traffic->engagement, &traffic->config, flags, t_us)) {
         return;
     }
     if (!traffic->engagement.is_engaged) {
         end_engagement(traffic, t_us);
         return;
     }
+    const bool is_continued = traffic->engagement.is_continued;
     traffic->engaged_since_us = t_us;
-    traffic->totals.engagements++;
-    apply_to_engaged(traffic, t_us, watch_start);
+    traffic->totals.engagements += is_continued ? 0 : 1;
+    apply_to_engaged(traffic, traffic->engagement.began_us, is_continued ? watch_resume : watch_start);
 }
 
 /** Take a well-formed frame of a known message. */
@@ -215,6 +236,7 @@ static void take_known(traffic_t *traffic, traffic_id_t *entry, const hal_can_fr
         watch_restart(entry->watch, t_us);
     }
     if ((message == AGV_MSG_VEHICLE_STATUS) && (entry->side == HAL_CAN_VEHICLE)) {
+        traffic->vcu = entry->watch;
         take_mode(traffic, frame->data[6], t_us);
     }
 }
@@ -254,6 +276,7 @@ void traffic_frame(traffic_t *traffic, hal_can_side_t side, const hal_can_frame_
         traffic->totals.error++;
         return;
     }
+    lose_vcu(traffic, t_us);
     traffic_id_t *entry = entry_of(traffic, side, frame, t_us);
     if ((frame->flags & HAL_CAN_REMOTE) != 0) {
         if (entry != NULL) {
@@ -291,6 +314,7 @@ static int compare(const void *left, const void *right) {
 }
 
 void traffic_end(traffic_t *traffic, uint64_t t_us) {
+    lose_vcu(traffic, t_us);
     if (traffic->engagement.is_engaged) {
         end_engagement(traffic, t_us);
         traffic->engagement.is_engaged = false;

@@ -22,15 +22,18 @@ static void add_gap(traffic_watch_t *watch, uint64_t gap_us) {
 void watch_restart(traffic_watch_t *watch, uint64_t t_us) {
     if (watch->is_running) {
         add_gap(watch, t_us - watch->since_us);
-        watch->since_us = t_us;
-    } else if (watch->when == TRAFFIC_ALWAYS) {
-        watch_start(watch, t_us);
     }
+    watch->is_running = watch->is_running || (watch->when == TRAFFIC_ALWAYS);
+    watch->since_us = t_us;
 }
 
 void watch_start(traffic_watch_t *watch, uint64_t t_us) {
     watch->is_running = true;
     watch->since_us = t_us;
+}
+
+void watch_resume(traffic_watch_t *watch, uint64_t began_us) {
+    watch_start(watch, (watch->since_us > began_us) ? watch->since_us : began_us);
 }
 
 void watch_stop(traffic_watch_t *watch, uint64_t t_us) {

@@ -16,6 +16,9 @@ void watch_restart(traffic_watch_t *watch, uint64_t t_us);
 /** The deadline starts afresh (an engagement begins). */
 void watch_start(traffic_watch_t *watch, uint64_t t_us);
 
+/** The deadline runs on (an engagement is continued), from this time at the earliest. */
+void watch_resume(traffic_watch_t *watch, uint64_t began_us);
+
 /** The deadline stops (an engagement or the run is over). A silence that is late counts. */
 void watch_stop(traffic_watch_t *watch, uint64_t t_us);
 

@@ -76,7 +76,7 @@ static void print_then(const why_text_t *shown, const why_trip_t *trip) {
     }
     const char *mark = shown->is_recorder ? "" : " (a recording cannot obey)"; /* behind the last that it explains */
     if (trip->confirmed_us == WHY_NEVER) {
-        text_add(&text, "%s not confirmed%s", shown->is_recorder ? "P" : why_unconfirmed(trip),
+        text_add(&text, "%s not confirmed%s", shown->is_recorder ? "safe state" : why_unconfirmed(trip),
                  (trip->stopped_us == WHY_NEVER) ? "" : mark);
     } else {
         add_time(&text, "P confirmed ", trip->confirmed_us);

@@ -35,7 +35,6 @@ why_t *why_new(const agv_config_t *config) {
     why_init_start(why);
     why->error = why_no_evidence();
     why->safe_frame = why_no_evidence();
-    why->moving = why_no_evidence();
     why->open_trip = SIZE_MAX;
     return why;
 }
@@ -83,7 +82,10 @@ const why_evidence_t *why_before(const why_message_t *message, uint64_t t_us) {
     return frame;
 }
 
-/** The trip that is not over; NULL: none. */
+const why_trip_t *why_open_trip(const why_t *why) {
+    return (why->open_trip < why->trip_count) ? &why->trips[why->open_trip] : NULL;
+}
+
 static why_trip_t *open_trip(why_t *why) {
     return (why->open_trip < why->trip_count) ? &why->trips[why->open_trip] : NULL;
 }
@@ -96,8 +98,8 @@ static void follow_trip(why_t *why, agv_message_t message, const why_evidence_t 
         return;
     }
     const bool ends_silence = (trip->kind == WHY_SILENCE) && (trip->message == message) && !trip->from_earlier_run;
-    trip->parked = trip->parked || (why->facts.gear == AGV_GEAR_P);
-    trip->disengaged = trip->disengaged || !why->engagement.engaged;
+    trip->parked = trip->parked || (t_us < why_park_until_us(why));
+    trip->disengaged = trip->disengaged || (t_us < why_off_until_us(why));
     if (ends_silence && (trip->next_us == WHY_NEVER) && !why_was_withheld(trip)) {
         trip->next_us = t_us;
         why_show(trip, frame);
@@ -112,6 +114,7 @@ void why_frame(why_t *why, hal_can_side_t side, const hal_can_frame_t *frame, ui
     const agv_message_t message = message_of(why, side, frame);
     why->now_us = t_us;
     why_init_check(why, t_us);
+    why_confirm_advance(why, t_us);
     if ((frame->flags & HAL_CAN_ERROR) != 0) {
         why->error = evidence;
         return;
@@ -160,6 +163,9 @@ void why_sent(why_t *why, hal_can_side_t side, const hal_can_frame_t *frame, uin
     if (!is_safe(why, frame)) {
         return;
     }
+    if (message == AGV_MSG_GEAR_COMMAND) {
+        why_confirm_park_sent(why, t_us);
+    }
     why_trip_t *trip = open_trip(why);
     if ((trip != NULL) && (trip->first_safe_us == WHY_NEVER)) {
         trip->first_safe_us = t_us;
@@ -202,6 +208,7 @@ static why_trip_t *note_trip(why_t *why, agv_fault_t reason, uint64_t t_us, bool
         return NULL;
     }
     why_budget_advance(why, t_us);
+    why_confirm_advance(why, t_us);
     *trip = (why_trip_t){.t_us = t_us,
                          .reason = reason,
                          .from_earlier_run = is_from_earlier_run(reason, at_start),
@@ -215,6 +222,8 @@ static why_trip_t *note_trip(why_t *why, agv_fault_t reason, uint64_t t_us, bool
 static void on_trip(why_t *why, agv_fault_t reason, uint64_t t_us, bool at_start) {
     why_trip_t *trip = note_trip(why, reason, t_us, at_start);
     why->was_tripped = true;
+    why->trackers[AGV_FAULT_MOVING_WHILE_SAFE].value = 0;
+    why_confirm_start(why, t_us);
     if (trip == NULL) {
         return;
     }
@@ -268,6 +277,7 @@ static void on_state(why_t *why, const agv_event_t *event, uint64_t t_us) {
         why->start_us = t_us;
         why->was_tripped = false;
         why->startup_missing = 0;
+        why->facts.vcu_speed_seen = false;
     }
     if (why->state == AGV_STATE_INIT) {
         why_init_end(why, t_us);
@@ -325,6 +335,9 @@ static void raise(why_t *why, agv_fault_t fault, agv_fault_class_t fault_class, 
 static void on_fault(why_t *why, const agv_event_t *event, uint64_t t_us) {
     if (event->a >= AGV_FAULT_COUNT) {
         return;
+    }
+    if ((event->a == AGV_FAULT_AI_COMMAND_OUT_OF_RANGE) && (event->c != 0)) {
+        why->bad_command_event = *event;
     }
     if (event->c != 0) {
         raise(why, (agv_fault_t)event->a, (agv_fault_class_t)event->b, t_us);

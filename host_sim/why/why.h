@@ -58,8 +58,8 @@ typedef struct {
     bool is_mixed;         /**< score: the frames did not all report the same mode */
     uint32_t bad_frames;   /**< score: so many; 0: not known */
     why_evidence_t bad;    /**< the frame at cause_us; t_us WHY_NEVER: none */
-    bool parked;           /**< since the trip, 0A3h has reported P */
-    bool disengaged;       /**< since the trip, 363h has reported that the autopilot is off */
+    bool parked;           /**< since the trip, P was confirmed */
+    bool disengaged;       /**< since the trip, it was confirmed that the autopilot is off */
     int64_t limit;         /**< that was exceeded; WHY_NO_LIMIT */
     const char *unit;      /**< of the limit: "ms", "frames", "ddeg", "counts"; NULL: no limit */
     size_t evidence_count;
@@ -148,7 +148,7 @@ bool why_began_in_autopilot(const why_t *why);
 /** Whether it was in INIT for longer than a start takes: to the end, or a part of the run was not supervised. */
 bool why_left_init_late(const why_t *why);
 
-/** What of the confirmation of a trip did not come, if not all of it did: "P", "autopilot off", "P and autopilot off". */
+/** What of the confirmation of a trip did not come, if not all of it did: "P", "autopilot off" or both. */
 const char *why_unconfirmed(const why_trip_t *trip);
 
 /** AGV_MISSING_* bits: what kept it in INIT, until it left it or until the end. */

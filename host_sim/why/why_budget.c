@@ -56,7 +56,7 @@ static bool speeds_differ(const why_t *why) {
     const int32_t wheels = abs(left + right) / 2;
     const int32_t vcu = ((int32_t)why->facts.vcu_speed * MM_S_PER_18_COUNTS) / 18;
     const int32_t larger = (wheels > vcu) ? wheels : vcu;
-    return why->facts.speed_known && why->facts.mode_known &&
+    return why->facts.speed_known && why->facts.vcu_speed_seen &&
            (abs(wheels - vcu) > SPEED_SLACK_MM_S + (larger / SPEED_SHARE));
 }
 
@@ -78,12 +78,18 @@ static bool has_no_mode(const why_t *why) {
     return why->facts.mode_known && is_no_mode(why) && (wheels_turn || vcu_moves);
 }
 
+/** A wheel turns, or 363h contradicts standing wheels. */
+static bool may_move(const why_t *why) {
+    return (abs(why->facts.left_mm_s) >= MOVING_MM_S) || (abs(why->facts.right_mm_s) >= MOVING_MM_S) ||
+           (why->faults[AGV_FAULT_SPEED_IMPLAUSIBLE].active && speeds_differ(why));
+}
+
 /** A budget: its condition depends on these messages. */
 typedef struct {
     agv_fault_t fault;
     bool judged;
     uint32_t messages;
-    uint16_t setting; /**< of its time */
+    uint16_t setting; /**< of its time; WHY_NO_SETTING: WHY_MOVING_MS */
     bool (*is_bad)(const why_t *why);
 } row_t;
 
@@ -104,24 +110,41 @@ static const row_t rows[] = {
     {AGV_FAULT_MODE_INVALID, false, BIT_OF(AGV_MSG_VEHICLE_STATUS), AGV_SETTING_mode_invalid_ms, has_both_modes},
     {AGV_FAULT_MODE_NONE, false, BIT_OF(AGV_MSG_VEHICLE_STATUS) | BIT_OF(AGV_MSG_WHEEL_SPEED), AGV_SETTING_mode_none_ms,
      has_no_mode},
+    {AGV_FAULT_MOVING_WHILE_SAFE, false, BIT_OF(AGV_MSG_WHEEL_SPEED) | BIT_OF(AGV_MSG_VEHICLE_STATUS), WHY_NO_SETTING,
+     may_move},
 };
 
 enum { ROWS = sizeof rows / sizeof rows[0] };
 
+static uint64_t limit_us(const why_t *why, const row_t *row) {
+    const uint32_t limit_ms =
+        (row->setting != WHY_NO_SETTING) ? agv_config_get(&why->config, row->setting) : WHY_MOVING_MS;
+    return (uint64_t)limit_ms * US_PER_MS;
+}
+
 uint64_t why_budget_us(const why_t *why, agv_fault_t fault) {
     for (size_t i = 0; i < ROWS; i++) {
         if (rows[i].fault == fault) {
-            return (uint64_t)agv_config_get(&why->config, rows[i].setting) * US_PER_MS;
+            return limit_us(why, &rows[i]);
         }
     }
     return 0;
 }
 
+/** From when on a budget counts; WHY_NEVER: it does not. A movement counts once the vehicle has stood since the trip. */
+static uint64_t counts_from(const why_t *why, const row_t *row) {
+    const why_trip_t *trip = why_open_trip(why);
+    if (row->is_bad == may_move) {
+        return (trip != NULL) ? trip->stopped_us : WHY_NEVER;
+    }
+    return row->judged ? why_judged_us(why) : 0;
+}
+
 /** Count the time since the last call: a bad microsecond adds 2, a good one takes 1. */
 static void count(const why_t *why, const row_t *row, why_tracker_t *tracker, uint64_t t_us) {
-    const uint64_t judged_us = row->judged ? why->engagement.judged_us : 0;
-    const uint64_t from_us = (tracker->since_us > judged_us) ? tracker->since_us : judged_us;
-    const uint64_t full = 2 * (uint64_t)US_PER_MS * agv_config_get(&why->config, row->setting);
+    const uint64_t counts_us = counts_from(why, row);
+    const uint64_t from_us = (tracker->since_us > counts_us) ? tracker->since_us : counts_us;
+    const uint64_t full = 2 * limit_us(why, row);
     if (from_us < t_us) {
         const uint64_t elapsed_us = t_us - from_us;
         if (tracker->bad) {
@@ -202,7 +225,7 @@ static void follow_progress(why_t *why, agv_fault_t fault, why_progress_t *progr
     follow_steps_back(progress, tracker->bad, full_us, t_us);
     restart_progress(tracker, progress);
     const bool steps_back_count = progress->steps_back_us != 0;
-    const bool judged = t_us >= why->engagement.judged_us;
+    const bool judged = t_us >= why_judged_us(why);
     add_step(&progress->gained, step, 0, judged, steps_back_count);
     if (steps_back_count) {
         add_step(&progress->gained_beyond, step, step.limit, judged, true);
@@ -241,22 +264,12 @@ static void take_throttle(why_t *why, const why_evidence_t *frame) {
     follow_progress(why, AGV_FAULT_THROTTLE_DEVIATION, &why->facts.throttle_progress, step, THROTTLE_DROP, frame->t_us);
 }
 
-/** The first frame of a movement, for MOVING_WHILE_SAFE. */
-static void follow_movement(why_t *why, const why_evidence_t *frame) {
-    const bool moves = (abs(why->facts.left_mm_s) >= MOVING_MM_S) || (abs(why->facts.right_mm_s) >= MOVING_MM_S);
-    if (moves && !why->is_moving) {
-        why->moving = *frame;
-    }
-    why->is_moving = moves;
-}
-
-static void take_wheels(why_t *why, const why_evidence_t *frame) {
+static void take_wheels(why_t *why, const uint8_t *data) {
     agv_wheel_speed_t wheels;
-    (void)agv_unpack_wheel_speed(&wheels, frame->frame.data);
+    (void)agv_unpack_wheel_speed(&wheels, data);
     why->facts.left_mm_s = clamp(wheels.left_mm_s, WHEEL_MAX_MM_S);
     why->facts.right_mm_s = clamp(wheels.right_mm_s, WHEEL_MAX_MM_S);
     why->facts.speed_known = true;
-    follow_movement(why, frame);
 }
 
 static void take_vehicle(why_t *why, const uint8_t *data) {
@@ -266,6 +279,7 @@ static void take_vehicle(why_t *why, const uint8_t *data) {
         why->began_in_autopilot = status.autopilot_mode;
     }
     why->facts.vcu_speed = status.speed_m_per_h;
+    why->facts.vcu_speed_seen = why->facts.vcu_speed_seen || (status.speed_m_per_h != 0);
     why->facts.mode_bits = data[6];
     why->facts.mode_known = true;
     why->manual_was_seen = why->manual_was_seen || status.manual_mode;
@@ -287,7 +301,7 @@ static void take_status(why_t *why, agv_message_t message, const why_evidence_t 
         why->facts.gear = frame->frame.data[0];
         break;
     case AGV_MSG_WHEEL_SPEED:
-        take_wheels(why, frame);
+        take_wheels(why, frame->frame.data);
         break;
     case AGV_MSG_VEHICLE_STATUS:
         take_vehicle(why, frame->frame.data);
@@ -297,14 +311,14 @@ static void take_status(why_t *why, agv_message_t message, const why_evidence_t 
     }
 }
 
-/** Whether the commands are known with which a budget compares: before, no frame is a good one. */
-static bool has_commands(const why_t *why, const row_t *row) {
+/** Whether that is known with which a budget compares: before, no frame is a good one. */
+static bool is_comparable(const why_t *why, const row_t *row) {
     for (uint32_t command = 0; command < AGV_COMMAND_COUNT; command++) {
         if (((row->messages & BIT_OF(command)) != 0) && !why->facts.command_known[command]) {
             return false;
         }
     }
-    return true;
+    return why->facts.vcu_speed_seen || (row->fault != AGV_FAULT_SPEED_IMPLAUSIBLE);
 }
 
 /** Evaluate what depends on a message, after it was read. */
@@ -324,7 +338,7 @@ static void evaluate(why_t *why, agv_message_t message, const why_evidence_t *fr
         }
         tracker->bad_since_us = (bad && !tracker->bad) ? frame->t_us : tracker->bad_since_us;
         tracker->bad = bad;
-        tracker->is_comparable = has_commands(why, &rows[i]);
+        tracker->is_comparable = is_comparable(why, &rows[i]);
     }
 }
 

@@ -83,10 +83,12 @@ static void explain_silence(const why_t *why, why_trip_t *trip) {
     if (trip->refused.count > 0) {
         why_show(trip, &message->refused.first);
     }
-    if (why_is_command(trip->message) && (engaged_us != WHY_NEVER) && (trip->cause_us < engaged_us)) {
+    const bool is_ai_heartbeat = trip->message == AGV_MSG_TURN_SIGNAL_COMMAND; /* once seen, it counts in manual too */
+    const bool from_engagement = why_is_command(trip->message) && !(is_ai_heartbeat && trip->was_heard);
+    if (from_engagement && (engaged_us != WHY_NEVER) && (trip->cause_us < engaged_us)) {
         trip->cause_us = engaged_us;
         trip->from_engagement = true;
-        if ((trip->message == AGV_MSG_TURN_SIGNAL_COMMAND) && (message->count == 0)) {
+        if (is_ai_heartbeat) {
             set_limit(why, trip, AGV_SETTING_ai_never_seen_timeout_ms, "ms");
         }
     }
@@ -239,16 +241,29 @@ static void explain_bus(const why_t *why, why_trip_t *trip) {
     }
 }
 
-/** What the vehicle did not do, counted from the trip. */
-static void explain_vehicle(const why_t *why, why_trip_t *trip) {
-    if ((trip->reason == AGV_FAULT_SAFE_STATE_UNCONFIRMED) && ((why->facts.mode_bits & AGV_VCU_FLAG_AUTOPILOT) == 0)) {
+/** The confirmation that was missing for too long, and since when it is counted. */
+static void explain_unconfirmed(const why_t *why, why_trip_t *trip) {
+    const bool is_park = why_confirm_waits_for_park(why, trip->t_us);
+    const why_missing_t *missing = is_park ? &why->confirmation.park : &why->confirmation.off;
+    if (is_park) {
         set_message(why, trip, AGV_MSG_GEAR_STATUS);
         set_limit(why, trip, AGV_SETTING_park_confirm_timeout_ms, "ms");
     }
-    if (trip->reason == AGV_FAULT_MOVING_WHILE_SAFE) {
-        set_frame(trip, &why->moving);
-    } else {
+    began_before(trip);
+    trip->cause_us = (missing->sum_us != 0) ? missing->began_us : trip->cause_us;
+}
+
+/** What the vehicle did not do. */
+static void explain_vehicle(const why_t *why, why_trip_t *trip) {
+    const why_tracker_t *moved = why_tracker(why, trip->reason);
+    if (trip->reason == AGV_FAULT_SAFE_STATE_UNCONFIRMED) {
+        explain_unconfirmed(why, trip);
+    } else if (trip->reason == AGV_FAULT_VEHICLE_NOT_STOPPING) {
         began_before(trip);
+    } else if (moved != NULL) {
+        set_frame(trip, &moved->first);
+    } else {
+        /* it moved when that was found */
     }
     show_recent(why, trip, trip->message, RECENT_FRAMES);
 }

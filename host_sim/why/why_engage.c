@@ -10,6 +10,10 @@ void why_engage_start(why_t *why) {
     why->engagement.judged_us = WHY_NEVER;
 }
 
+uint64_t why_judged_us(const why_t *why) {
+    return ((why->facts.mode_bits & AGV_VCU_FLAG_AUTOPILOT) != 0) ? why->engagement.judged_us : WHY_NEVER;
+}
+
 /** Whether an engagement follows the one before so soon that it is the same. */
 static bool continues(const why_t *why, uint64_t t_us) {
     const uint64_t reengage_us = (uint64_t)why->config.reengage_ms * US_PER_MS;
@@ -57,7 +61,11 @@ static void follow_flicker(const why_t *why, why_engagement_t *engagement, const
 void why_engage_frame(why_t *why, const why_evidence_t *frame) {
     why_engagement_t *engagement = &why->engagement;
     const uint32_t bits = frame->frame.data[6] & (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT);
+    const uint64_t alive_until_us = why_fresh_until_us(why, AGV_MSG_VEHICLE_STATUS);
     why_budget_advance(why, frame->t_us);
+    if (engagement->engaged && (alive_until_us != 0) && (alive_until_us <= frame->t_us)) {
+        end(why, alive_until_us);
+    }
     follow_flicker(why, engagement, frame, bits == AGV_VCU_FLAG_MANUAL);
     if (bits == (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT)) {
         engagement->off_frames = 0; /* the mode before remains */

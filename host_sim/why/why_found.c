@@ -44,10 +44,9 @@ bool why_left_init_late(const why_t *why) {
 }
 
 const char *why_unconfirmed(const why_trip_t *trip) {
-    if (trip->parked == trip->disengaged) {
-        return "P and autopilot off";
-    }
-    return trip->parked ? "autopilot off" : "P";
+    static const char *const words[2][2] = {{"P and autopilot off", "P"},
+                                            {"autopilot off", "P together with autopilot off"}};
+    return words[trip->parked][trip->disengaged];
 }
 
 uint16_t why_missing(const why_t *why) {

@@ -10,19 +10,8 @@
 /* The first frames of a healthy bus come within some cycles. */
 enum { CHECK_EVERY_US = 10000, FIRST_FRAMES_US = 200000 };
 
-static uint64_t deadline_us(const why_t *why, agv_message_t number) {
-    return ((uint64_t)agv_config_get(&why->config, message_deadline_setting(number)) + 1) * US_PER_MS;
-}
-
-/** Whether a heartbeat that INIT waits for beats. */
-static bool beats(const why_t *why, agv_message_t number, uint64_t t_us) {
-    const why_message_t *message = &why->messages[number];
-    return (message->count > 1) && (t_us <= message->beat_us + deadline_us(why, number));
-}
-
 static bool is_fresh(const why_t *why, agv_message_t number, uint64_t t_us) {
-    const why_message_t *message = &why->messages[number];
-    return (message->count > 0) && (t_us <= message->last_us + deadline_us(why, number));
+    return t_us < why_fresh_until_us(why, number);
 }
 
 /** The messages whose silence trips must be fresh, apart from those with an alive counter: they have to beat. */
@@ -60,7 +49,7 @@ bool why_vcu_is_slow(const why_t *why) {
 }
 
 static bool is_slow(const why_t *why, uint64_t t_us) {
-    return beats(why, AGV_MSG_VEHICLE_STATUS, t_us) && is_fresh(why, AGV_MSG_WHEEL_SPEED, t_us) &&
+    return is_fresh(why, AGV_MSG_VEHICLE_STATUS, t_us) && is_fresh(why, AGV_MSG_WHEEL_SPEED, t_us) &&
            why_wheels_are_slow(why) && why_vcu_is_slow(why);
 }
 
@@ -68,8 +57,8 @@ static uint32_t missing_now(const why_t *why, uint64_t t_us) {
     const bool manual = why->facts.mode_known && ((why->facts.mode_bits & AGV_VCU_FLAG_MANUAL) != 0) &&
                         ((why->facts.mode_bits & AGV_VCU_FLAG_AUTOPILOT) == 0);
     uint32_t missing = 0;
-    missing |= beats(why, AGV_MSG_VEHICLE_STATUS, t_us) ? 0 : AGV_MISSING_VCU_HEARTBEAT;
-    missing |= beats(why, AGV_MSG_STEERING_STATUS, t_us) ? 0 : AGV_MISSING_EPS_HEARTBEAT;
+    missing |= is_fresh(why, AGV_MSG_VEHICLE_STATUS, t_us) ? 0 : AGV_MISSING_VCU_HEARTBEAT;
+    missing |= is_fresh(why, AGV_MSG_STEERING_STATUS, t_us) ? 0 : AGV_MISSING_EPS_HEARTBEAT;
     missing |= manual ? 0 : AGV_MISSING_MANUAL;
     missing |= are_fresh(why, t_us) ? 0 : AGV_MISSING_MESSAGES;
     missing |= is_slow(why, t_us) ? 0 : AGV_MISSING_STANDSTILL;

@@ -62,6 +62,7 @@ typedef struct {
 /** What vehicle and AI computer say, as far as budgets need it. */
 typedef struct {
     bool angle_known, command_known[AGV_COMMAND_COUNT], mode_known, speed_known;
+    bool vcu_speed_seen; /**< 363h reported a speed above 0 in this run of the supervisor (SUP-12) */
     uint32_t angle_raw, angle_command_raw;
     uint32_t throttle, throttle_command;
     uint32_t gear, gear_command;
@@ -78,13 +79,29 @@ typedef struct {
     uint32_t off_frames;
     uint64_t began_us;                      /**< of the last one; WHY_NEVER */
     uint64_t ended_us;                      /**< of the last one; WHY_NEVER */
-    uint64_t judged_us;                     /**< from here on it is judged; WHY_NEVER: not engaged */
+    uint64_t judged_us;                     /**< the grace time ends; WHY_NEVER: not engaged */
     why_evidence_t frames[WHY_ENGAGEMENTS]; /**< of the last ones, a ring */
     uint32_t count;
     uint64_t manual_us;    /**< how long manual was reported while engaged, less half of the other time */
     uint64_t at_us;        /**< of the last 363h */
     why_evidence_t manual; /**< the first of those that reported manual */
 } why_engagement_t;
+
+/** A confirmation of the safe state. */
+typedef struct {
+    uint64_t sum_us;   /**< for so long it was missing in all */
+    uint64_t began_us; /**< valid while the sum is not 0 */
+} why_missing_t;
+
+/** Both confirmations, since the trip. */
+typedef struct {
+    why_missing_t off;
+    why_missing_t park;
+    uint64_t at_us;      /**< counted up to here */
+    uint64_t missing_us; /**< one of them was missing last */
+    uint64_t park_sent_us;
+    bool is_park_sent;
+} why_confirmation_t;
 
 /** All that is known. */
 struct why {
@@ -93,11 +110,13 @@ struct why {
     bool is_gateway;
     bool is_recording;
     bool is_recorder;
-    const agv_event_t *snapshot; /**< of a flight recorder: the event in hand; NULL: frames are received */
+    const agv_event_t *snapshot;   /**< of a flight recorder: the event in hand; NULL: frames are received */
+    agv_event_t bad_command_event; /**< of a flight recorder: the last that raised AI_COMMAND_OUT_OF_RANGE */
 
     why_message_t messages[AGV_MSG_COUNT];
     why_tracker_t trackers[AGV_FAULT_COUNT];
     why_tracker_t too_fast[AGV_COMMAND_COUNT];
+    agv_fault_t eps_mode; /**< EPS_MODE_*: after the last bad mode that counted */
     why_facts_t facts;
     why_engagement_t engagement;
     why_evidence_t bad_command; /**< the last one; t_us WHY_NEVER: none */
@@ -106,9 +125,8 @@ struct why {
     why_evidence_t status_id; /**< a frame with the identifier of the status frame */
     why_evidence_t other_set; /**< the first frame with an identifier of the other set */
     agv_message_t other_message;
-    why_evidence_t error;  /**< the last error frame */
-    why_evidence_t moving; /**< the first 101h of a movement */
-    bool is_moving;
+    why_evidence_t error; /**< the last error frame */
+    why_confirmation_t confirmation;
     why_evidence_t safe_frame; /**< the last frame sent that could be the first safe one */
 
     uint8_t state;
@@ -144,6 +162,9 @@ static inline bool why_is_command(agv_message_t message) {
     return (uint32_t)message < AGV_COMMAND_COUNT;
 }
 
+/** The trip that is not over; NULL: none. */
+const why_trip_t *why_open_trip(const why_t *why);
+
 /** The last frames of a message. @param back 0 = the last one @return NULL: there are not so many */
 const why_evidence_t *why_history(const why_message_t *message, uint32_t back);
 
@@ -156,6 +177,8 @@ why_evidence_t why_no_evidence(void);
 /** @name Arrival and alive counters (why_life.c). @{ */
 void why_life_start(why_t *why);
 void why_life_frame(why_t *why, agv_message_t message, const why_evidence_t *frame);
+/** When the deadline of a status message expires; 0: it is not running. */
+uint64_t why_fresh_until_us(const why_t *why, agv_message_t message);
 /** Count a frame of a message that does not restart its deadline. */
 void why_life_refuse(why_t *why, agv_message_t message, const why_evidence_t *frame);
 /** @} */
@@ -183,9 +206,24 @@ const why_tracker_t *why_tracker(const why_t *why, agv_fault_t fault);
 
 /** The engagement (why_engage.c). */
 void why_engage_start(why_t *why);
+/** From when on it is judged; WHY_NEVER: it is not, also because the last 363h does not report autopilot. */
+uint64_t why_judged_us(const why_t *why);
 void why_engage_frame(why_t *why, const why_evidence_t *frame);
 /** A change of state of a flight recorder, which has no frames: it was engaged while it was ACTIVE. */
 void why_engage_state(why_t *why, const agv_event_t *event, uint64_t t_us);
+
+/** @name The confirmations of the safe state (why_confirm.c). @{ */
+/** Begin anew, at a trip. */
+void why_confirm_start(why_t *why, uint64_t t_us);
+void why_confirm_park_sent(why_t *why, uint64_t t_us);
+/** Count the time up to now. */
+void why_confirm_advance(why_t *why, uint64_t t_us);
+/** Until when autopilot off, or P, is confirmed; not later than now: it is not. */
+uint64_t why_off_until_us(const why_t *why);
+uint64_t why_park_until_us(const why_t *why);
+/** Which of the two was missing for too long. @return false: autopilot off */
+bool why_confirm_waits_for_park(const why_t *why, uint64_t t_us);
+/** @} */
 
 /** @name The conditions for leaving INIT (why_init.c). @{ */
 void why_init_start(why_t *why);

@@ -81,15 +81,14 @@ void why_intruder_command(why_t *why, agv_message_t command, const why_evidence_
     if (before == NULL) {
         return;
     }
-    const uint64_t gap_us = frame->t_us - before->t_us;
-    const uint64_t half_us = ((uint64_t)agv_message_cycle_ms(command) * US_PER_MS) / 2;
-    const uint64_t silence_us =
-        ((uint64_t)agv_config_get(&why->config, message_deadline_setting(command)) + 1) * US_PER_MS;
-    if (gap_us >= silence_us) {
+    /* the supervisor knows whole ms only */
+    const uint64_t gap_ms = (frame->t_us / US_PER_MS) - (before->t_us / US_PER_MS);
+    const uint32_t half_ms = (agv_message_cycle_ms(command) + 1) / 2;
+    if (gap_ms > agv_config_get(&why->config, message_deadline_setting(command))) {
         score->value = 0;
         score->bad = false;
     } else {
         const why_score_frames_t seen = {frame, before};
-        why_score(score, gap_us < half_us, why->config.command_too_fast_gaps, 0, &seen);
+        why_score(score, gap_ms < half_ms, why->config.command_too_fast_gaps, 0, &seen);
     }
 }

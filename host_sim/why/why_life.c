@@ -1,5 +1,6 @@
 /* When each message came last, and when its alive counter changed last (SUP-2, SUP-3). */
 #include "agv/codec.h"
+#include "text/units.h"
 #include "why/why_internal.h"
 
 void why_life_start(why_t *why) {
@@ -45,6 +46,14 @@ static bool is_withheld(const why_t *why, agv_message_t number) {
     const uint32_t mode = why->facts.mode_bits & (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT);
     return why->is_gateway && why_is_command(number) && (number != AGV_MSG_TURN_SIGNAL_COMMAND) &&
            why->engagement.engaged && (mode != AGV_VCU_FLAG_AUTOPILOT);
+}
+
+uint64_t why_fresh_until_us(const why_t *why, agv_message_t number) {
+    const why_message_t *message = &why->messages[number];
+    const bool has_counter = message_counter_at(number) != MESSAGE_NO_COUNTER;
+    const uint64_t deadline_ms = agv_config_get(&why->config, message_deadline_setting(number));
+    const bool is_running = message->count > (has_counter ? 1 : 0); /* one value alone does not show life */
+    return is_running ? ((message->beat_us / US_PER_MS) + deadline_ms + 1) * US_PER_MS : 0;
 }
 
 void why_life_refuse(why_t *why, agv_message_t number, const why_evidence_t *frame) {

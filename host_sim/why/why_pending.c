@@ -7,10 +7,15 @@
 #include "why/why_internal.h"
 #include "why/why_words.h"
 
+/** A 43Fh that never came has a deadline of its own, from the engagement on (SUP-8). */
+static bool is_never_seen(const why_t *why, agv_message_t message) {
+    return (message == AGV_MSG_TURN_SIGNAL_COMMAND) && (why->messages[message].count == 0);
+}
+
 /** Since when the silence of a message counts; WHY_NEVER: it does not. */
 static uint64_t counts_from(const why_t *why, agv_message_t message) {
     const uint64_t beat_us = why->messages[message].beat_us;
-    if (!why_is_command(message) || (message == AGV_MSG_TURN_SIGNAL_COMMAND)) {
+    if (!why_is_command(message) || ((message == AGV_MSG_TURN_SIGNAL_COMMAND) && !is_never_seen(why, message))) {
         return beat_us;
     }
     const uint64_t engaged_us = why->engagement.engaged ? why->engagement.began_us : WHY_NEVER;
@@ -34,6 +39,8 @@ static bool add_silence(text_t *text, const why_t *why, agv_fault_t fault) {
     const uint64_t from_us = counts_from(why, row->message);
     const uint64_t age_us = (from_us != WHY_NEVER) ? why->now_us - from_us : 0;
     const bool stuck = message->repeats;
+    const uint16_t setting =
+        is_never_seen(why, row->message) ? (uint16_t)AGV_SETTING_ai_never_seen_timeout_ms : row->setting;
     if ((age_us <= usual_us(why, row->message)) || (stuck != (row->kind == WHY_STUCK))) {
         return false;
     }
@@ -42,13 +49,13 @@ static bool add_silence(text_t *text, const why_t *why, agv_fault_t fault) {
              !stuck           ? "was silent"
              : message->steps ? WHY_WRONG_STEPS
                               : "kept its alive counter",
-             age_us / US_PER_MS, (unsigned)agv_config_get(&why->config, row->setting));
+             age_us / US_PER_MS, (unsigned)agv_config_get(&why->config, setting));
     return true;
 }
 
 static bool add_tracked(text_t *text, const why_t *why, agv_fault_t fault) {
-    const why_tracker_t *tracker = &why->trackers[fault];
-    if ((tracker->value == 0) || !tracker->bad) {
+    const why_tracker_t *tracker = why_tracker(why, fault);
+    if ((tracker == NULL) || !tracker->bad) {
         return false;
     }
     text_add(text, "%s had begun at ", agv_fault_name(fault));

@@ -23,37 +23,59 @@ static bool is_seen(const agv_event_t *event, agv_message_t message) {
     return (message != AGV_MSG_NONE) && (((event->seen >> (uint32_t)message) & 1) != 0);
 }
 
+/** When the cause was found: in ACTIVE when it trips, else it may have been a warning before. WHY_NEVER: not recorded. */
+static uint64_t found_us(const why_t *why, const agv_event_t *event, const why_trip_t *trip) {
+    const uint64_t raised_us = why->faults[trip->reason].active ? why->fault_since_us[trip->reason] : WHY_NEVER;
+    return (event->a == AGV_STATE_STANDBY) ? raised_us : trip->t_us;
+}
+
+/** The last good frame came a deadline before this time. */
+static void last_came(why_trip_t *trip, uint64_t expired_us) {
+    const uint64_t lasted_us = recorded_limit_us(trip) + US_PER_MS;
+    trip->last_good_us = (expired_us > lasted_us) ? expired_us - lasted_us : 0;
+    trip->cause_us = trip->last_good_us + cycle_us(trip);
+}
+
+/** A heartbeat of the AI computer. What was lost before a reset is found at the next engagement. */
+static void explain_ai_heartbeat(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
+    const uint64_t at_us = found_us(why, event, trip);
+    const bool at_engagement = (event->a == AGV_STATE_STANDBY) && why->was_tripped && (at_us == trip->t_us);
+    if (at_engagement || (at_us == WHY_NEVER)) {
+        trip->cause_us = WHY_NEVER;
+    } else {
+        last_came(trip, at_us);
+    }
+}
+
 /**
- * A command that had come before. Its deadline counts from the engagement on; a heartbeat that was lost before trips when
- * it is engaged, before it is ACTIVE. Else it is known when it came last only if it was ACTIVE already.
+ * A command of motion that had come before. Its deadline counts from the engagement on: when it came last is known only
+ * if it was ACTIVE already.
  */
 static void explain_silent_command(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
     const bool is_active = event->a != AGV_STATE_STANDBY;
     const uint64_t engaged_us = why->engagement.began_us;
-    if (!is_active && (trip->message == AGV_MSG_TURN_SIGNAL_COMMAND)) {
-        trip->cause_us = trip->t_us;
-        trip->from_engagement = true;
-    } else if (!is_active || ((engaged_us != WHY_NEVER) && (engaged_us >= trip->cause_us))) {
+    if (!is_active || ((engaged_us != WHY_NEVER) && (engaged_us >= trip->cause_us))) {
         trip->from_engagement = is_active && (engaged_us <= trip->cause_us + US_PER_MS);
     } else {
-        trip->last_good_us = trip->cause_us;
-        trip->cause_us += cycle_us(trip);
+        last_came(trip, trip->t_us);
     }
 }
 
 /** A deadline expires when the last good frame is older than its limit. */
 static void recorded_silence(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
     const bool is_command = why_is_command(trip->message);
+    const bool is_ai_heartbeat = trip->message == AGV_MSG_TURN_SIGNAL_COMMAND;
     trip->was_heard = is_seen(event, trip->message);
-    if (!trip->was_heard && (trip->message == AGV_MSG_TURN_SIGNAL_COMMAND)) {
+    if (!trip->was_heard && is_ai_heartbeat) {
         trip->limit = why->config.ai_never_seen_timeout_ms;
     }
     before(trip, recorded_limit_us(trip) + US_PER_MS);
-    if (trip->was_heard && is_command) {
+    if (trip->was_heard && is_ai_heartbeat) {
+        explain_ai_heartbeat(why, event, trip);
+    } else if (trip->was_heard && is_command) {
         explain_silent_command(why, event, trip);
     } else if (trip->was_heard) {
-        trip->last_good_us = trip->cause_us;
-        trip->cause_us += cycle_us(trip);
+        last_came(trip, trip->t_us);
     } else {
         trip->cause_us = is_command ? trip->cause_us : why->start_us;
         trip->from_engagement = is_command; /* the deadline began with it */
@@ -70,14 +92,31 @@ static void recorded_value(const why_t *why, const agv_event_t *event, why_trip_
     why_value_limit(trip);
 }
 
-static void recorded_vehicle(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
+static bool is_active(const why_t *why, agv_fault_t fault) {
+    return why->faults[fault].active;
+}
+
+/** Whether P was missing for too long, not that the autopilot is off. Where both are missing, the shorter limit ended first. */
+static bool waits_for_park(const why_t *why, const agv_event_t *event) {
     const uint32_t flags = event->frames[AGV_MSG_VEHICLE_STATUS][6];
-    if ((trip->reason == AGV_FAULT_SAFE_STATE_UNCONFIRMED) && ((flags & AGV_VCU_FLAG_AUTOPILOT) == 0)) {
+    const bool off_is_missing = ((flags & AGV_VCU_FLAG_AUTOPILOT) != 0) ||
+                                is_active(why, AGV_FAULT_VCU_HEARTBEAT_LOST) ||
+                                is_active(why, AGV_FAULT_VCU_HEARTBEAT_STUCK);
+    const bool park_is_missing =
+        (event->frames[AGV_MSG_GEAR_STATUS][0] != AGV_GEAR_P) || is_active(why, AGV_FAULT_GEAR_STATUS_TIMEOUT);
+    return park_is_missing &&
+           (!off_is_missing || (why->config.park_confirm_timeout_ms < why->config.confirm_timeout_ms));
+}
+
+static void recorded_vehicle(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
+    const bool is_sum = trip->reason == AGV_FAULT_SAFE_STATE_UNCONFIRMED;
+    if (is_sum && waits_for_park(why, event)) {
         trip->message = AGV_MSG_GEAR_STATUS;
         trip->id = why->ids.of[AGV_MSG_GEAR_STATUS];
         trip->limit = why->config.park_confirm_timeout_ms;
     }
     before(trip, recorded_limit_us(trip));
+    trip->at_the_latest = is_sum;
     if (trip->reason == AGV_FAULT_MOVING_WHILE_SAFE) { /* slow readings in between prolong it */
         trip->cause_us = WHY_NEVER;
     }
@@ -100,6 +139,7 @@ static void explain(const why_t *why, const agv_event_t *event, why_trip_t *trip
     case WHY_BUDGET:
     case WHY_MODE:
         before(trip, why_budget_us(why, trip->reason));
+        trip->at_the_latest = true; /* with pauses it began earlier */
         trip->cause_us = (trip->reason != AGV_FAULT_MODE_FLAPPING) ? trip->cause_us : WHY_NEVER;
         break;
     case WHY_VEHICLE:
@@ -126,7 +166,8 @@ static void show_payload(const why_t *why, const agv_event_t *event, why_trip_t 
         return;
     }
     const bool from_ai = why_is_command(message) && why->is_gateway;
-    const uint64_t t_us = ((message == trip->message) && is_decided_by_frame(trip)) ? trip->t_us : WHY_NEVER;
+    const uint64_t decided_us = (trip->kind == WHY_VALUE) ? trip->cause_us : trip->t_us;
+    const uint64_t t_us = ((message == trip->message) && is_decided_by_frame(trip)) ? decided_us : WHY_NEVER;
     why_evidence_t evidence = {.t_us = t_us, .side = from_ai ? HAL_CAN_AI : HAL_CAN_VEHICLE};
     evidence.frame.id = why->ids.of[message];
     evidence.frame.length = (uint8_t)AGV_DLC;
@@ -140,8 +181,18 @@ static void show_payload(const why_t *why, const agv_event_t *event, why_trip_t 
     trip->evidence_count++;
 }
 
+/** An invalid command trips in ACTIVE when it comes. In STANDBY it came before the reset, which it outlived (FSM-11). */
+static const agv_event_t *event_that_shows(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
+    if ((trip->kind != WHY_VALUE) || (event->a != AGV_STATE_STANDBY)) {
+        return event;
+    }
+    trip->cause_us = found_us(why, event, trip);
+    return (trip->cause_us != WHY_NEVER) ? &why->bad_command_event : event;
+}
+
 void why_cause_recorded(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
-    explain(why, event, trip);
-    show_payload(why, event, trip, trip->message);
-    show_payload(why, event, trip, why_compared_with(trip->reason));
+    const agv_event_t *shown = event_that_shows(why, event, trip);
+    explain(why, shown, trip);
+    show_payload(why, shown, trip, trip->message);
+    show_payload(why, shown, trip, why_compared_with(trip->reason));
 }

@@ -95,6 +95,13 @@ static bool is_bad(const tracked_t *row, const why_row_t *what, const uint8_t *d
     }
 }
 
+static agv_fault_t mode_fault(const uint8_t *data) {
+    if (data[3] == AGV_EPS_MODE_OFF) {
+        return AGV_FAULT_EPS_MODE_OFF;
+    }
+    return agv_value_is_valid(AGV_MSG_EPS_STATUS, data) ? AGV_FAULT_EPS_MODE_NOT_ANGLE : AGV_FAULT_EPS_MODE_INVALID;
+}
+
 static void follow(why_t *why, const tracked_t *row, agv_message_t message, const why_evidence_t *frame) {
     const why_row_t *what = why_row(row->fault);
     why_tracker_t *tracker = &why->trackers[row->fault];
@@ -107,7 +114,7 @@ static void follow(why_t *why, const tracked_t *row, agv_message_t message, cons
         return;
     }
     const why_score_frames_t seen = {frame, why_before(&why->messages[message], frame->t_us)};
-    if (row->judged && (frame->t_us < why->engagement.judged_us)) {
+    if (row->judged && (frame->t_us < why_judged_us(why))) {
         if (bad && !tracker->bad) {
             note_first(tracker, seen.frame, seen.before);
         }
@@ -116,8 +123,10 @@ static void follow(why_t *why, const tracked_t *row, agv_message_t message, cons
     }
     const uint32_t frames = (what->setting != WHY_NO_SETTING) ? agv_config_get(&why->config, what->setting) : 1;
     why_score(tracker, bad, frames, row->judged ? why->engagement.began_us : 0, &seen);
-    const bool is_other = (row->condition == EPS_MODE) && (frame->frame.data[3] != tracker->first.frame.data[3]);
-    tracker->is_mixed = tracker->is_mixed || (bad && is_other);
+    if (bad && (row->condition == EPS_MODE)) {
+        tracker->is_mixed = tracker->is_mixed || (frame->frame.data[3] != tracker->first.frame.data[3]);
+        why->eps_mode = mode_fault(frame->frame.data);
+    }
 }
 
 void why_track_frame(why_t *why, agv_message_t message, const why_evidence_t *frame) {
@@ -130,13 +139,8 @@ void why_track_frame(why_t *why, agv_message_t message, const why_evidence_t *fr
     }
 }
 
-/** Those whose faults are not named after themselves. */
-static agv_fault_t shared(agv_fault_t fault) {
-    const bool is_mode = (fault == AGV_FAULT_EPS_MODE_INVALID) || (fault == AGV_FAULT_EPS_MODE_NOT_ANGLE);
-    return is_mode ? AGV_FAULT_EPS_MODE_OFF : fault;
-}
-
 const why_tracker_t *why_tracker(const why_t *why, agv_fault_t fault) {
-    const why_tracker_t *tracker = &why->trackers[shared(fault)];
-    return (tracker->value != 0) ? tracker : NULL;
+    const bool is_mode = (fault >= AGV_FAULT_EPS_MODE_OFF) && (fault <= AGV_FAULT_EPS_MODE_NOT_ANGLE);
+    const why_tracker_t *tracker = &why->trackers[is_mode ? AGV_FAULT_EPS_MODE_OFF : fault];
+    return ((tracker->value == 0) || (is_mode && (fault != why->eps_mode))) ? NULL : tracker;
 }

@@ -147,6 +147,14 @@ static void add_since(text_t *text, const char *words, uint64_t t_us) {
     }
 }
 
+/** Add since when it lasted. */
+static void add_began(text_t *text, const why_trip_t *trip) {
+    if (trip->cause_us != WHY_NEVER) {
+        add_since(text, ", from ", trip->cause_us);
+        text_add(text, trip->at_the_latest ? " at the latest" : "");
+    }
+}
+
 void why_words_refused(text_t *text, const why_trip_t *trip) {
     const hal_can_frame_t *frame = &trip->refused.first.frame;
     const unsigned count = (unsigned)trip->refused.count;
@@ -263,7 +271,7 @@ static void say_vehicle(text_t *text, const why_t *why, const why_trip_t *trip) 
     } else {
         add_meaning(text, why, trip, trip->reason);
     }
-    add_since(text, ", from ", trip->cause_us);
+    add_began(text, trip);
 }
 
 static void say_lasting(text_t *text, const why_t *why, const why_trip_t *trip) {
@@ -272,7 +280,7 @@ static void say_lasting(text_t *text, const why_t *why, const why_trip_t *trip) 
     }
     add_meaning(text, why, trip, trip->reason);
     if (trip->cause_us != trip->t_us) {
-        add_since(text, ", from ", trip->cause_us);
+        add_began(text, trip);
     }
 }
 

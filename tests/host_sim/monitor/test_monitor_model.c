@@ -99,6 +99,15 @@ void test_an_engagement_restarts_the_deadline_of_a_command(void) {
     TEST_ASSERT_EQUAL(1, said("late"));
 }
 
+/* Shows: SUP-3 */
+void test_a_continued_engagement_restarts_no_deadline(void) {
+    report_mode(0, 1000, "80");
+    frame(VEHICLE, 1008, 0x065, "2823000000000000");
+    report_mode(1010, 1120, "40"); /* ended at 1030 */
+    report_mode(1130, 1140, "80");
+    TEST_ASSERT_EQUAL(1133, said_at("065h steering_command late: no frame for 125 ms"));
+}
+
 /* Shows: SUP-9 */
 void test_both_modes_neither_begin_nor_end_an_engagement(void) {
     report_mode(0, 50, "C0");

@@ -127,6 +127,8 @@ void test_a_message_that_came_at_a_time_that_is_not_known(void) {
     trip.kind = WHY_STUCK;
     is(sentence.cause, "The alive counter of steering_command (065h) did not change from the engagement at 61.984 s "
                        "on. Its deadline is 125 ms.");
+    trip.cause_us = WHY_NEVER;
+    is(sentence.cause, "The alive counter of steering_command (065h) did not change. Its deadline is 125 ms.");
 }
 
 void test_since_when_a_score_counts(void) {

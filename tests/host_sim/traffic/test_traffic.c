@@ -108,6 +108,38 @@ void test_commands_are_watched_while_engaged(void) {
     TEST_ASSERT_EQUAL_UINT64(120 * MS, entry->watch->gaps.longest_us);
 }
 
+/* Autopilot from 1000 ms on; manual from 2000 to 2110 ms: the third 363h ends the engagement at 2020 ms, 100 ms before the next. */
+void test_an_engagement_that_continues_another_is_the_same(void) {
+    for (uint64_t ms = 1000; ms <= 3000; ms += 10) {
+        feed(ms * MS, 0x363, (((ms >= 2000) && (ms < 2120)) ? 0x4000u : 0x8000u) | ((ms / 10) % 256));
+        if ((ms <= 2000) || (ms >= 2180)) {
+            feed(ms * MS, 0x065, 0x2823000000000000);
+        }
+    }
+    traffic_end(traffic, 3000 * MS);
+    const traffic_watch_t *watch = traffic_message(traffic, AGV_MSG_STEERING_COMMAND)->watch;
+    TEST_ASSERT_EQUAL_UINT64(1, traffic_totals(traffic).engagements);
+    TEST_ASSERT_EQUAL_UINT64(1900 * MS, traffic_totals(traffic).engaged_us);
+    TEST_ASSERT_EQUAL_UINT64(180 * MS, watch->gaps.longest_us);
+    TEST_ASSERT_EQUAL_UINT64(1, watch->late);
+    TEST_ASSERT_EQUAL_UINT64(2125 * MS, watch->late_at_us);
+}
+
+/* The deadline of 363h is 50 ms. For 100 ms more the engagement could be continued. */
+void test_an_engagement_ends_with_the_vcu(void) {
+    for (uint64_t ms = 0; ms <= 100; ms += 10) {
+        feed(ms * MS, 0x363, 0x8000 | (ms / 10));
+    }
+    feed(100 * MS, 0x168, 0x0800000000000000);
+    feed(4990 * MS, 0x050, 0);
+    feed(5000 * MS, 0x363, 0x8000 | 10); /* with the old counter */
+    feed(5010 * MS, 0x168, 0x0800000000000000);
+    traffic_end(traffic, 5020 * MS);
+    TEST_ASSERT_EQUAL_UINT64(1, traffic_totals(traffic).engagements);
+    TEST_ASSERT_EQUAL_UINT64(250 * MS, traffic_totals(traffic).engaged_us);
+    TEST_ASSERT_EQUAL_UINT64(0, traffic_message(traffic, AGV_MSG_GEAR_COMMAND)->watch->late);
+}
+
 void test_an_invalid_command_restarts_no_deadline(void) {
     feed(0, 0x363, 0x8000);
     feed(10 * MS, 0x168, 0x0800000000000000);

@@ -43,6 +43,10 @@ static const row_t ROWS[] = {
     {"an AI computer that was never seen has its own deadline",
      {{0x363, AUTOPILOT, 5000}},
      {AGV_FAULT_AI_HEARTBEAT_LOST, 5501, WHY_SILENCE, 5000, NONE, 500, "ms", NULL}},
+    {"a heartbeat of the AI computer that was lost before the engagement",
+     {{0x43F, "\0\0\0\0\0\0\0\x01", 109}, {0x43F, "\0\0\0\0\0\0\0\x02", 209}, {0x363, AUTOPILOT, 1000}},
+     {AGV_FAULT_AI_HEARTBEAT_LOST, 1000, WHY_SILENCE, 309, 209, 350, "ms",
+      "43Fh turn_signal_command was silent: last at 0.209 s, deadline 350 ms, none since"}},
     {"a counter that is stuck",
      {{0x067, "\x01", 1000}, {0x067, "\x02", 1010}, {0x067, "\x02", 1020}, {0x067, "\x02", 1030}},
      {AGV_FAULT_EPS_HEARTBEAT_STUCK, 1061, WHY_STUCK, 1020, 1010, 50, "ms",
@@ -103,6 +107,11 @@ static const row_t ROWS[] = {
      {{0x363, AUTOPILOT, 1000}, {0x065, "\x28\x23", 1020}, {0x065, "\x51\x46", 1045}},
      {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, 1045, WHY_VALUE, 1045, 1020, 9000, "ddeg",
       NULL}}, /* on the wire 0 is -900.0 deg */
+    {"the speeds are compared from the first one of 363h above 0 on: 1 m/h against 1000 mm/s",
+     {{0x101, "\xE8\x03\0\0\xE8\x03", 1990},
+      {0x363, "\0\0\0\0\0\0\x40", 2000},
+      {0x363, "\x01\0\0\0\0\0\x40\x01", 3000}},
+     {AGV_FAULT_SPEED_IMPLAUSIBLE, 4000, WHY_BUDGET, 3000, NONE, 1000, "ms", NULL}},
     {"a bit of 363h that counts while engaged only began with the engagement",
      {{0x363, "\0\0\0\0\0\0\x40", 900},
       {0x363, "\0\0\0\0\x08\0\x40\x01", 910},
@@ -196,16 +205,16 @@ void test_extended_frames_during_a_silence(void) {
 void test_a_command_that_the_gateway_withheld(void) {
     config.topology = AGV_TOPOLOGY_GATEWAY;
     begin_anew();
-    feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 1000);
+    feed_mode(why, 0x80, 1000);
     for (uint64_t i = 0; i < 6; i++) { /* 363h reports manual after that of 1010 */
         feed_frame(why, HAL_CAN_AI, 0x065, "\0\0\0\0\0\0\0", 1010 + (i * 25));
-        feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 1020 + (i * 25));
-        feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\0\0\x40", 1030 + (i * 25));
+        feed_mode(why, 0x80, 1020 + ((i * 25) / 10 * 10));
+        feed_mode(why, 0x40, 1030 + ((i * 25) / 10 * 10));
     }
     const why_trip_t *trip = trip_by(AGV_FAULT_STEERING_COMMAND_TIMEOUT, 1136);
     TEST_ASSERT_EQUAL_UINT64(1010000, trip->last_good_us);
     TEST_ASSERT_EQUAL_UINT64(1035000, trip->cause_us);
-    feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 1170);
+    feed_mode(why, 0x80, 1170);
     feed_frame(why, HAL_CAN_AI, 0x065, "\0\0\0\0\0\0\0", 1180); /* does not end it: TRIPPED passes none on */
     check_words(trip,
                 "065h steering_command was not passed on: last at 1.010 s, deadline 125 ms, none since; 5 frames came "
@@ -326,6 +335,18 @@ void test_the_command_that_comes_too_fast(void) {
     TEST_ASSERT_EQUAL_UINT64(1030000, trip->cause_us);
     TEST_ASSERT_EQUAL_UINT64(1000000, trip->last_good_us);
     TEST_ASSERT_EQUAL_INT64(10, trip->limit);
+}
+
+/* 12.6 ms are 12 or 13 ms of whole stamps. Half the cycle of 065h is 12.5 ms: two gaps in five are too short. */
+void test_gaps_are_measured_in_whole_ms(void) {
+    hal_can_frame_t frame = {.id = 0x065, .length = 8};
+    for (uint64_t i = 0; i <= 90; i++) {
+        why_frame(why, HAL_CAN_VEHICLE, &frame, 1000000 + (i * 12600));
+    }
+    const why_trip_t *trip = trip_by(AGV_FAULT_COMMAND_TOO_FAST, 2134);
+    TEST_ASSERT_EQUAL(AGV_MSG_STEERING_COMMAND, trip->message);
+    TEST_ASSERT_EQUAL_UINT64(1012600, trip->cause_us);
+    TEST_ASSERT_EQUAL_UINT64(1000000, trip->last_good_us);
 }
 
 void test_an_error_frame_shows_a_bus_off(void) {

@@ -196,11 +196,61 @@ void test_the_usual_cycle_of_a_slow_sender_is_no_silence(void) {
                              pending(AGV_FAULT_AI_HEARTBEAT_LOST));
 }
 
+void test_an_ai_computer_that_never_came_has_begun_to_be_missing(void) {
+    feed_state(why, AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_FAULT_NONE, 900);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\0\0\x80", 1000);
+    why_end(why, 1300000);
+    TEST_ASSERT_EQUAL_STRING("43Fh turn_signal_command was silent for 300 ms, deadline 500 ms",
+                             pending(AGV_FAULT_AI_HEARTBEAT_LOST));
+    TEST_ASSERT_NULL(pending(AGV_FAULT_AI_HEARTBEAT_STUCK));
+}
+
 void test_a_bit_that_does_not_count_has_not_begun(void) {
     feed_state(why, AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_FAULT_NONE, 900);
     feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\x08\0\x40", 1000);
     why_end(why, 1005000);
     TEST_ASSERT_NULL(pending(AGV_FAULT_VCU_AI_CAN_LOST));
+}
+
+void test_a_vcu_that_reports_no_speed_is_not_compared(void) {
+    feed_state(why, AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_FAULT_NONE, 900);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x101, "\xE8\x03\0\0\xE8\x03\0", 1000); /* 1000 mm/s */
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\0\0\x40", 1010);
+    why_end(why, 1500000);
+    TEST_ASSERT_NULL(pending(AGV_FAULT_SPEED_IMPLAUSIBLE));
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\x01\0\0\0\0\0\x40", 1520);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\0\0\x40", 1530);
+    why_end(why, 1600000);
+    TEST_ASSERT_EQUAL_STRING("SPEED_IMPLAUSIBLE had begun at 1.520 s", pending(AGV_FAULT_SPEED_IMPLAUSIBLE));
+}
+
+void test_bad_modes_at_the_end_are_named_after_the_last_one(void) {
+    feed_state(why, AGV_STATE_INIT, AGV_STATE_ACTIVE, AGV_FAULT_NONE, 900);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\0\0\x80", 1000);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\xFF\0\0\0", 1500);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\0\0\0\0", 1510);
+    why_end(why, 1515000);
+    TEST_ASSERT_NULL(pending(AGV_FAULT_EPS_MODE_OFF));
+    TEST_ASSERT_NULL(pending(AGV_FAULT_EPS_MODE_INVALID));
+    TEST_ASSERT_EQUAL_STRING("EPS_MODE_NOT_ANGLE had begun at 1.500 s", pending(AGV_FAULT_EPS_MODE_NOT_ANGLE));
+}
+
+/* Less than mode_frames 363h without autopilot: it is engaged, but not judged. */
+void test_what_is_not_judged_has_not_begun(void) {
+    feed_state(why, AGV_STATE_INIT, AGV_STATE_ACTIVE, AGV_FAULT_NONE, 900);
+    for (uint64_t t_ms = 1000; t_ms < 1600; t_ms += 10) {
+        feed_mode(why, 0x80, t_ms);
+    }
+    feed_mode(why, 0, 1600);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\0\0\0\0", 1601);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x0A3, "\x08\0\0\0\0\0\0", 1602);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x050, "\x64\0\0\0\0\0\0", 1603); /* throttle in P */
+    feed_mode(why, 0x80, 1610);
+    why_end(why, 1611000);
+    TEST_ASSERT_NULL(pending(AGV_FAULT_EPS_MODE_NOT_ANGLE));
+    TEST_ASSERT_NULL(pending(AGV_FAULT_THROTTLE_IN_PARK));
+    feed_frame(why, HAL_CAN_VEHICLE, 0x0A3, "\x08\0\0\0\0\0\0", 1612);
+    TEST_ASSERT_EQUAL_STRING("THROTTLE_IN_PARK had begun at 1.603 s", pending(AGV_FAULT_THROTTLE_IN_PARK));
 }
 
 void test_the_limit_of_moving_while_safe_is_no_setting(void) {
@@ -209,6 +259,96 @@ void test_the_limit_of_moving_while_safe_is_no_setting(void) {
     TEST_ASSERT_EQUAL(WHY_VEHICLE, why_trip(why, 1)->kind);
     TEST_ASSERT_EQUAL_INT64(200, why_trip(why, 1)->limit);
     TEST_ASSERT_EQUAL_STRING("ms", why_trip(why, 1)->unit);
+}
+
+/* 363h and 0A3h every 10 ms, from a time on to before another. */
+static void report(uint8_t mode, char gear, uint64_t from_ms, uint64_t to_ms) {
+    const char bytes[8] = {gear};
+    for (uint64_t t_ms = from_ms; t_ms < to_ms; t_ms += 10) {
+        feed_mode(why, mode, t_ms);
+        feed_frame(why, HAL_CAN_VEHICLE, 0x0A3, bytes, t_ms);
+    }
+}
+
+static void trip_and_park(uint64_t t_ms) {
+    const hal_can_frame_t park = {.id = 0x168, .length = 8, .data = {0x08}};
+    why_sent(why, HAL_CAN_VEHICLE, &park, t_ms * 1000);
+    feed_trip(why, AGV_FAULT_EMERGENCY_STOP, t_ms);
+}
+
+static void check_unconfirmed(uint64_t t_ms, agv_message_t message, uint64_t cause_ms) {
+    feed_fault(why, AGV_FAULT_SAFE_STATE_UNCONFIRMED, AGV_CLASS_TRIP, true, t_ms);
+    const why_trip_t *trip = why_trip(why, why_trip_count(why) - 1);
+    TEST_ASSERT_EQUAL(message, trip->message);
+    TEST_ASSERT_EQUAL_UINT64(cause_ms * 1000, trip->cause_us);
+    feed_fault(why, AGV_FAULT_SAFE_STATE_UNCONFIRMED, AGV_CLASS_TRIP, false, t_ms);
+}
+
+enum { MANUAL = 0x40, AUTOPILOT = 0x80, D = 1, P = 8 };
+
+void test_the_autopilot_was_not_off_in_time(void) {
+    report(AUTOPILOT, D, 1000, 2000);
+    trip_and_park(2000);
+    report(AUTOPILOT, D, 2010, 2100);
+    report(AUTOPILOT, P, 2100, 2490);
+    report(MANUAL, P, 2490, 2500); /* the first of three */
+    check_unconfirmed(2500, AGV_MSG_VEHICLE_STATUS, 2000);
+    TEST_ASSERT_EQUAL_STRING("autopilot off", why_unconfirmed(why_trip(why, 0)));
+}
+
+/* 400 ms and 100 ms. It is cleared by 5 s with both confirmed. */
+void test_the_time_without_p_is_added_up(void) {
+    report(MANUAL, D, 1000, 2000);
+    trip_and_park(2000);
+    report(MANUAL, D, 2010, 2400);
+    report(MANUAL, P, 2400, 3000);
+    report(MANUAL, D, 3000, 3110);
+    check_unconfirmed(3100, AGV_MSG_GEAR_STATUS, 2000);
+    report(MANUAL, P, 3110, 8120);
+    report(MANUAL, D, 8120, 8630);
+    check_unconfirmed(8620, AGV_MSG_GEAR_STATUS, 8120);
+}
+
+void test_p_is_expected_once_it_was_sent(void) {
+    report(MANUAL, D, 1000, 2000);
+    feed_trip(why, AGV_FAULT_EMERGENCY_STOP, 2000);
+    report(MANUAL, D, 2010, 3000);
+    const hal_can_frame_t park = {.id = 0x168, .length = 8, .data = {0x08}};
+    why_sent(why, HAL_CAN_VEHICLE, &park, 3000000);
+    report(MANUAL, D, 3000, 3510);
+    check_unconfirmed(3500, AGV_MSG_GEAR_STATUS, 3000);
+}
+
+void test_a_silent_vcu_confirms_nothing(void) {
+    report(MANUAL, P, 1000, 2010);
+    for (uint64_t t_ms = 2010; t_ms <= 2050; t_ms += 20) {
+        feed_frame(why, HAL_CAN_VEHICLE, 0x0A3, "\x08\0\0\0\0\0\0", t_ms);
+    }
+    trip_and_park(2051); /* 50 ms after the last 363h */
+    for (uint64_t t_ms = 2060; t_ms <= 2540; t_ms += 20) {
+        feed_frame(why, HAL_CAN_VEHICLE, 0x0A3, "\x08\0\0\0\0\0\0", t_ms);
+    }
+    check_unconfirmed(2551, AGV_MSG_VEHICLE_STATUS, 2051);
+    TEST_ASSERT_EQUAL_STRING("autopilot off", why_unconfirmed(why_trip(why, 0)));
+}
+
+void test_both_were_confirmed_but_never_together(void) {
+    report(AUTOPILOT, D, 1000, 2000);
+    trip_and_park(2000);
+    report(AUTOPILOT, P, 2010, 2030);
+    report(MANUAL, D, 2030, 2060);
+    TEST_ASSERT_EQUAL_STRING("P together with autopilot off", why_unconfirmed(why_trip(why, 0)));
+}
+
+/* 100 mm/s from 4010 on; one 101h at 4100 with 0. */
+void test_a_slow_reading_does_not_begin_a_movement_anew(void) {
+    feed_frame(why, HAL_CAN_VEHICLE, 0x101, "\0\0\0\0\0\0\0", 1990);
+    feed_trip(why, AGV_FAULT_EMERGENCY_STOP, 2000);
+    for (uint64_t t_ms = 4010; t_ms < 4230; t_ms += 10) {
+        feed_frame(why, HAL_CAN_VEHICLE, 0x101, (t_ms == 4100) ? "\0\0\0\0\0\0\0" : "\x64\0\0\0\0\0\0", t_ms);
+    }
+    feed_fault(why, AGV_FAULT_MOVING_WHILE_SAFE, AGV_CLASS_TRIP, true, 4225);
+    TEST_ASSERT_EQUAL_UINT64(4010000, why_trip(why, 1)->cause_us);
 }
 
 void test_more_trips_than_fit_are_left_out(void) {

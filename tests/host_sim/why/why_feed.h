@@ -14,6 +14,12 @@ static inline void feed_frame(why_t *why, hal_can_side_t side, uint32_t id, cons
     why_frame(why, side, &frame, t_ms * 1000);
 }
 
+/** A 363h whose counter runs; times are multiples of 10 ms. */
+static inline void feed_mode(why_t *why, uint8_t mode, uint64_t t_ms) {
+    const char bytes[8] = {0, 0, 0, 0, 0, 0, (char)mode, (char)(t_ms / 10)};
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, bytes, t_ms);
+}
+
 static inline void feed_state(why_t *why, uint8_t from, uint8_t to, uint8_t reason, uint64_t t_ms) {
     const session_event_t event = {.t_ms = t_ms,
                                    .recorded = {.kind = AGV_EVENT_STATE, .a = from, .b = to, .c = reason}};

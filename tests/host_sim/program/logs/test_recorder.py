@@ -47,7 +47,7 @@ class Recorder(hostsim.Case):
                                                  "run 0       10 events, 0.000 s to 4.007 s of its clock"])
         for line in ("tripped     at 3.107 s: STEERING_COMMAND_TIMEOUT",
                      "  why       065h steering_command was silent: last at 2.981 s, deadline 125 ms",
-                     "  then      P not confirmed",
+                     "  then      safe state not confirmed",
                      "faults      STEERING_COMMAND_TIMEOUT  trip  3.107 s   1 time   0.900 s",
                      "            SAFE_STATE_UNCONFIRMED    trip  3.607 s   1 time   0.400 s  active at the end"):
             self.assertIn(line + "\n", text)
