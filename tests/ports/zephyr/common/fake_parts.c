@@ -171,7 +171,7 @@ void fake_parts_reset(void) {
     fake_watchdog_feeds = 0u;
     fake_reset_flags = RESET_POR;
     fake_reset_error = 0;
-    fake_reset_supported = 0u;
+    fake_reset_supported = RESET_POR | RESET_BROWNOUT;
     fake_reset_reads = 0u;
     fake_reset_clears = 0u;
 }
@@ -278,7 +278,7 @@ DT_FOREACH_STATUS_OKAY(agv_test_watchdog, WATCHDOG)
 /* The reset flags. */
 uint32_t fake_reset_flags;
 int fake_reset_error;
-uint32_t fake_reset_supported;
+uint32_t fake_reset_supported = RESET_POR | RESET_BROWNOUT;
 uint32_t fake_reset_reads;
 uint32_t fake_reset_clears;
 

@@ -36,6 +36,11 @@ int z_impl_hwinfo_get_reset_cause(uint32_t *cause) {
     return 0;
 }
 
+int z_impl_hwinfo_get_supported_reset_cause(uint32_t *supported) {
+    *supported = RESET_POR | RESET_BROWNOUT;
+    return 0;
+}
+
 int z_impl_hwinfo_clear_reset_cause(void) {
     return 0;
 }
