@@ -116,7 +116,7 @@ static const row_t rows[] = {
 
 enum { ROWS = sizeof rows / sizeof rows[0] };
 
-static uint64_t limit_us(const why_t *why, const row_t *row) {
+static uint64_t budget_limit_us(const why_t *why, const row_t *row) {
     const uint32_t limit_ms =
         (row->setting != WHY_NO_SETTING) ? agv_config_get(&why->config, row->setting) : WHY_MOVING_MS;
     return (uint64_t)limit_ms * US_PER_MS;
@@ -125,14 +125,14 @@ static uint64_t limit_us(const why_t *why, const row_t *row) {
 uint64_t why_budget_us(const why_t *why, agv_fault_t fault) {
     for (size_t i = 0; i < ROWS; i++) {
         if (rows[i].fault == fault) {
-            return limit_us(why, &rows[i]);
+            return budget_limit_us(why, &rows[i]);
         }
     }
     return 0;
 }
 
 /** From when on a budget counts; WHY_NEVER: it does not. A movement counts once the vehicle has stood since the trip. */
-static uint64_t counts_from(const why_t *why, const row_t *row) {
+static uint64_t budget_counts_from(const why_t *why, const row_t *row) {
     const why_trip_t *trip = why_open_trip(why);
     if (row->is_bad == may_move) {
         return (trip != NULL) ? trip->stopped_us : WHY_NEVER;
@@ -142,9 +142,9 @@ static uint64_t counts_from(const why_t *why, const row_t *row) {
 
 /** Count the time since the last call: a bad microsecond adds 2, a good one takes 1. */
 static void count(const why_t *why, const row_t *row, why_tracker_t *tracker, uint64_t t_us) {
-    const uint64_t counts_us = counts_from(why, row);
+    const uint64_t counts_us = budget_counts_from(why, row);
     const uint64_t from_us = (tracker->since_us > counts_us) ? tracker->since_us : counts_us;
-    const uint64_t full = 2 * limit_us(why, row);
+    const uint64_t full = 2 * budget_limit_us(why, row);
     if (from_us < t_us) {
         const uint64_t elapsed_us = t_us - from_us;
         if (tracker->bad) {

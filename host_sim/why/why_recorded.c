@@ -92,18 +92,14 @@ static void recorded_value(const why_t *why, const agv_event_t *event, why_trip_
     why_value_limit(trip);
 }
 
-static bool is_active(const why_t *why, agv_fault_t fault) {
-    return why->faults[fault].active;
-}
-
 /** Whether P was missing for too long, not that the autopilot is off. Where both are missing, the shorter limit ended first. */
 static bool waits_for_park(const why_t *why, const agv_event_t *event) {
     const uint32_t flags = event->frames[AGV_MSG_VEHICLE_STATUS][6];
     const bool off_is_missing = ((flags & AGV_VCU_FLAG_AUTOPILOT) != 0) ||
-                                is_active(why, AGV_FAULT_VCU_HEARTBEAT_LOST) ||
-                                is_active(why, AGV_FAULT_VCU_HEARTBEAT_STUCK);
+                                why->faults[AGV_FAULT_VCU_HEARTBEAT_LOST].active ||
+                                why->faults[AGV_FAULT_VCU_HEARTBEAT_STUCK].active;
     const bool park_is_missing =
-        (event->frames[AGV_MSG_GEAR_STATUS][0] != AGV_GEAR_P) || is_active(why, AGV_FAULT_GEAR_STATUS_TIMEOUT);
+        (event->frames[AGV_MSG_GEAR_STATUS][0] != AGV_GEAR_P) || why->faults[AGV_FAULT_GEAR_STATUS_TIMEOUT].active;
     return park_is_missing &&
            (!off_is_missing || (why->config.park_confirm_timeout_ms < why->config.confirm_timeout_ms));
 }

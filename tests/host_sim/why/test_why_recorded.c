@@ -11,7 +11,7 @@ enum { NOT_ACTIVE = 0 };
 
 /* Record `event` with this kind and these fields, and begin the next one. */
 static void record(agv_event_kind_t kind, uint8_t a, uint8_t b, uint8_t c, uint64_t t_ms) {
-    event.kind = kind;
+    event.kind = (uint8_t)kind;
     event.a = a;
     event.b = b;
     event.c = c;
