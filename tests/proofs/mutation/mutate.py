@@ -183,7 +183,7 @@ def command_merge(arguments):
     paths = [pathlib.Path(name) for name in arguments.names] or sorted(folder.glob("*.jsonl"))
     found = {mutant.id: mutant for mutant in all_mutants()}
     problems = []
-    equivalents = read_equivalents(found, problems)
+    equivalents = read_equivalents(set(found), problems)
     verdicts = judge(found, read_results(paths), equivalents, problems)
     table(found, verdicts)
     for key, verdict in verdicts.items():
