@@ -41,13 +41,19 @@ static const char *without_note(const char *printed) {
     return ((found == NULL) || (found > strchr(printed, '\n'))) ? printed : found + strlen(note);
 }
 
-/* A compressed log that is cut off is read up to there with --skip-bad-lines. That is noted in the only line. */
+/* A compressed log that is cut off is read up to there with --skip-bad-lines. That is noted in a line, and a second one says
+ * that its last line is left out. */
 static bool is_note_of_cut(const char *printed) {
-    static const char note[] = ": the gzip file is cut off; read up to there\n";
-    const size_t length = strlen(printed);
-    const size_t expected = strlen(note);
-    return (length > expected) && (strcmp(&printed[length - expected], note) == 0) &&
-           (strchr(printed, '\n') == &printed[length - 1]);
+    static const char cut[] = ": the gzip file is cut off; read up to there\n";
+    static const char left_out[] = ": the last line may be cut off; it is left out\n";
+    const char *const first = strstr(printed, cut);
+    if ((first == NULL) || (strchr(printed, '\n') != first + strlen(cut) - 1)) {
+        return false;
+    }
+    const char *const next = first + strlen(cut);
+    const char *const second = strstr(next, left_out);
+    return (*next == '\0') || ((second != NULL) && (strchr(next, '\n') == second + strlen(left_out) - 1) &&
+                               (second[strlen(left_out)] == '\0'));
 }
 
 static outcome_t read_log(const uint8_t *bytes, size_t size, bool skip) {
