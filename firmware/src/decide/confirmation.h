@@ -13,7 +13,7 @@
 /** The total time without a confirmation. It is cleared only when both have been confirmed for confirmed_ms. */
 typedef struct {
     uint16_t sum_ms;
-    bool at_tick; /**< it was missing at the last tick */
+    bool at_tick; /**< it was missing at the last tick; of P that was not sent yet: the last step was a tick */
 } agv_missing_t;
 
 /** The confirmations. */
