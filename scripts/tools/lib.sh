@@ -4,6 +4,7 @@ set -euo pipefail
 ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 SCRIPT=$(readlink -f "$0")
 export LC_ALL=C.UTF-8
+PATH=$PATH:/usr/sbin:/sbin # an ordinary user of Debian does not have kmod, tc and debootstrap in it
 
 # Lines on standard error, and out. A proof goes by the name of its folder.
 die() {

@@ -4,7 +4,6 @@
 # A folder that is there is used as it is, without a network; remove build/vcan to fetch the kernel that is newest then.
 # shellcheck source=../lib.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
-PATH=$PATH:/usr/sbin:/sbin # for kmod
 cache=$ROOT/build/vcan
 umask 022 # for all users
 init=$ROOT/scripts/tools/vcan/init.sh
