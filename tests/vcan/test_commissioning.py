@@ -4,14 +4,16 @@ Only the times are shorter, and the lines that set up a real controller are left
 """
 import pathlib
 import re
+import shutil
 import subprocess
-import tempfile
 import unittest
 
 import canbus
+import in_memory
 
 PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs/commissioning.md"
 SHORTER = {"timeout 1h": "timeout 5s", "--for 8h": "--for 4s"}
+PROGRAMS = ("bash", "sh", "sleep", "timeout", "candump")
 
 
 def commands():
@@ -22,30 +24,32 @@ def commands():
                 yield command
 
 
-class Checklist(unittest.TestCase):
+class Checklist(canbus.Case):
     def setUp(self):
+        super().setUp()
+        if canbus.MEMORY:
+            in_memory.bring([shutil.which(name) for name in PROGRAMS], canbus.MEMORY)
         subprocess.run("ip link add dev can0 type vcan && ip link set can0 up", shell=True, check=True)
         self.addCleanup(subprocess.run, ["ip", "link", "del", "can0"], check=False)
 
     def test_its_commands(self):
         ran = 0
-        with tempfile.TemporaryDirectory() as folder:
-            for command in commands():
-                listens = "can0" in command
-                for long, short in SHORTER.items():
-                    command = command.replace(long, short)
-                vehicle = subprocess.Popen(["sh", "-c", 'sleep 0.3; exec "$0" vehicle --can can0 --for 20s', canbus.PROGRAM],
-                                           stdout=subprocess.DEVNULL) if listens else None
-                done = subprocess.run(["bash", "-c", command], cwd=folder, stdout=subprocess.PIPE,
-                                      stderr=subprocess.STDOUT, check=False, text=True)  # no timeout: in_memory.py
-                if vehicle:
-                    vehicle.terminate()
-                    vehicle.wait()
-                expected = 124 if command.startswith("timeout") else 0  # the status of timeout
-                self.assertEqual(expected, done.returncode, f"{command}:\n{done.stdout}")
-                self.assertNotIn("NOT SUPERVISED", done.stdout, command)
-                ran += 1
-            self.assertRegex((pathlib.Path(folder) / "vehicle.conf").read_text(encoding="utf-8"), r"CONFIG_AGV_ID_SET_HEADING=y")
+        for command in commands():
+            listens = "can0" in command
+            for long, short in SHORTER.items():
+                command = command.replace(long, short)
+            vehicle = subprocess.Popen(["sh", "-c", 'sleep 0.3; exec "$0" vehicle --can can0 --for 20s', canbus.PROGRAM],
+                                       stdout=subprocess.DEVNULL) if listens else None
+            done = subprocess.run(["bash", "-c", command], cwd=self.folder, stdout=subprocess.PIPE,
+                                  stderr=subprocess.STDOUT, check=False, text=True)  # no timeout: in_memory.py
+            if vehicle:
+                vehicle.terminate()
+                vehicle.wait()
+            expected = 124 if command.startswith("timeout") else 0  # the status of timeout
+            self.assertEqual(expected, done.returncode, f"{command}:\n{done.stdout}")
+            self.assertNotIn("NOT SUPERVISED", done.stdout, command)
+            ran += 1
+        self.assertRegex((self.folder / "vehicle.conf").read_text(encoding="utf-8"), r"CONFIG_AGV_ID_SET_HEADING=y")
         self.assertEqual(5, ran)
 
 
