@@ -137,11 +137,12 @@ static void earn_store_credits(agv_core_t *core, uint32_t elapsed_ms) {
     }
 }
 
-/* INT-3: writing flash may stall the processor: only while no reaction can be due. In SAFE the vehicle may still move. */
+/* INT-3: writing flash may stall the processor: only while no reaction can be due. In SAFE the vehicle may still move. There
+ * the wheels alone decide, so that a speed in 363h that hangs does not keep the events in RAM. */
 static bool may_store(const agv_core_t *core) {
-    const bool stands = agv_vehicle_is_at_standstill(&core->timers);
-    return ((core->machine.state == (uint8_t)AGV_STATE_STANDBY) && stands) ||
-           ((core->machine.state == (uint8_t)AGV_STATE_SAFE) && (stands || !core->machine.output_closed));
+    return ((core->machine.state == (uint8_t)AGV_STATE_STANDBY) && agv_vehicle_is_at_standstill(&core->timers)) ||
+           ((core->machine.state == (uint8_t)AGV_STATE_SAFE) &&
+            (agv_vehicle_wheels_stand(&core->timers) || !core->machine.output_closed));
 }
 
 /* One event per tick. */

@@ -220,6 +220,17 @@ void test_in_safe_flash_is_not_written_before_standstill(void) {
     TEST_ASSERT_EQUAL_UINT32(next_sequence(), appended());
 }
 
+/* The speed in 363h hangs at 2000 m/h, 0.56 m/s: no standstill, and not enough to contradict the wheels. */
+/* Shows: INT-3 */
+void test_in_safe_flash_is_written_when_the_wheels_stand_without_standstill(void) {
+    safe_while_driving();
+    fixture_wheels(&f, 0, 0);
+    fixture_speed(&f, 2000);
+    expect_state_after(&f, 20000, AGV_STATE_SAFE);
+    TEST_ASSERT_TRUE(agv_supervisor_output_closed(&f.supervisor));
+    TEST_ASSERT_EQUAL_UINT32(next_sequence(), appended());
+}
+
 /* The output opens 5 s after the trip (FSM-12). */
 /* Shows: INT-3 */
 void test_in_safe_flash_is_written_when_the_output_is_open(void) {
