@@ -11,7 +11,8 @@ void agv_stopping_start(agv_stopping_t *stopping, agv_timers_t *timers) {
 
 void agv_stopping_step(agv_stopping_t *stopping, const agv_timers_t *timers, const agv_vehicle_t *vehicle,
                        uint32_t elapsed_ms) {
-    agv_budget_add(&stopping->moved, agv_vehicle_may_move(vehicle, MOVING_MM_S), elapsed_ms, MOVING_MS);
+    const uint32_t seen_ms = vehicle->wheels_fresh ? elapsed_ms : 0u; /* a slow 101h hides nothing either */
+    agv_budget_add(&stopping->moved, agv_vehicle_may_move(vehicle, MOVING_MM_S), seen_ms, MOVING_MS);
     if (agv_vehicle_wheels_stand(timers)) {
         if (!stopping->stood) {
             stopping->moved = (agv_budget_t){0}; /* of the way to the stop */

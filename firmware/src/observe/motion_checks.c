@@ -135,8 +135,7 @@ static bool speeds_differ(const agv_vehicle_t *vehicle) {
     const int32_t wheels_mm_s = magnitude_of(left_mm_s + right_mm_s) / 2;
     const int32_t vcu_mm_s = ((int32_t)vehicle->vcu_speed * MM_S_PER_18_COUNTS) / 18;
     const int32_t larger_mm_s = (wheels_mm_s > vcu_mm_s) ? wheels_mm_s : vcu_mm_s;
-    return speeds_are_known(vehicle) &&
-           (magnitude_of(wheels_mm_s - vcu_mm_s) > (SPEED_SLACK_MM_S + (larger_mm_s / SPEED_SHARE)));
+    return magnitude_of(wheels_mm_s - vcu_mm_s) > (SPEED_SLACK_MM_S + (larger_mm_s / SPEED_SHARE));
 }
 
 /* Add the time to a budget that progress clears. */
@@ -156,7 +155,8 @@ static void spend(agv_budget_t *budget, agv_progress_t *progress, bool off, uint
 void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_t *facts, uint32_t elapsed_ms) {
     const agv_config_t *const config = facts->config;
     agv_budget_t *const budgets = checks->budgets;
-    agv_budget_add(&budgets[AGV_BUDGET_SPEED], speeds_differ(facts->vehicle), elapsed_ms, config->speed_implausible_ms);
+    const uint32_t known_ms = speeds_are_known(facts->vehicle) ? elapsed_ms : 0u; /* a slow 101h hides nothing */
+    agv_budget_add(&budgets[AGV_BUDGET_SPEED], speeds_differ(facts->vehicle), known_ms, config->speed_implausible_ms);
     if (!facts->judged) {
         return; /* the other budgets do not change */
     }

@@ -81,11 +81,11 @@ bool agv_vehicle_wheels_stand(const agv_timers_t *timers) {
 }
 
 bool agv_vehicle_wheel_turns(const agv_vehicle_t *vehicle, uint32_t speed_mm_s) {
-    return vehicle->wheels_fresh && !wheels_are_below(vehicle, speed_mm_s);
+    return !wheels_are_below(vehicle, speed_mm_s);
 }
 
 bool agv_vehicle_may_move(const agv_vehicle_t *vehicle, uint32_t speed_mm_s) {
-    return vehicle->wheels_fresh && (vehicle->wheels_doubted || agv_vehicle_wheel_turns(vehicle, speed_mm_s));
+    return vehicle->wheels_doubted || agv_vehicle_wheel_turns(vehicle, speed_mm_s);
 }
 
 bool agv_vehicle_throttle_is_idle(const agv_vehicle_t *vehicle, const agv_config_t *config) {

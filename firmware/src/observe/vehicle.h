@@ -69,10 +69,10 @@ bool agv_vehicle_is_at_standstill(const agv_timers_t *timers);
 /** Whether the wheels stand: both have been slow for standstill_ms, with fresh 101h that the VCU does not contradict. */
 bool agv_vehicle_wheels_stand(const agv_timers_t *timers);
 
-/** Whether a wheel turns, in either direction, at @p speed_mm_s or faster, with fresh 101h. */
+/** Whether in the last 101h, fresh or not, a wheel turns at @p speed_mm_s or faster, in either direction. */
 bool agv_vehicle_wheel_turns(const agv_vehicle_t *vehicle, uint32_t speed_mm_s);
 
-/** Whether a wheel turns at @p speed_mm_s or faster, or the VCU contradicts 101h. False without fresh 101h. */
+/** Whether in the last 101h, fresh or not, a wheel turns at @p speed_mm_s or faster, or the VCU contradicts it. */
 bool agv_vehicle_may_move(const agv_vehicle_t *vehicle, uint32_t speed_mm_s);
 
 /** Whether the throttle status is idle; false if none was received, or the last 050h was not valid. */

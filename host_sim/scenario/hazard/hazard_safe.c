@@ -170,9 +170,12 @@ static void check_stopping(hazard_t *hazard) {
     hazard->speeds_mm_s[hazard->speed_at] = now_mm_s;
     hazard->speed_at = (hazard->speed_at + 1) % HAZARD_SPEEDS;
     if (!hazard->closed || !hazard->trip.tripped || (now_mm_s < MOVING_MM_S) ||
-        (before_mm_s - now_mm_s >= SLOWER_MM_S) || hazard_is_said_to_stand(hazard) ||
-        is_silent_after_standing(hazard)) {
+        (before_mm_s - now_mm_s >= SLOWER_MM_S) || hazard_is_said_to_stand(hazard)) {
         hazard->rolling_since_ms = hazard->t_ms;
+    } else if (is_silent_after_standing(hazard)) {
+        hazard->rolling_since_ms += SPEED_SLOT_MS; /* this time does not count, and that before it does */
+    } else {
+        /* it rolls, and 101h shows it */
     }
     if (hazard->trip.tripped &&
         (hazard->t_ms - hazard->trip.first_ms > (uint64_t)hazard->config->stop_timeout_ms + MARGIN_MS) &&

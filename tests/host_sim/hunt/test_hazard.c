@@ -356,6 +356,11 @@ static const struct {
     {HAZARD_NONE, NULL, NULL, &ROLLS,
      "  - {at_ms: 2990, vcu: set, field: left_speed, value: 00000000h, frames: 50}\n"
      "  - {at_ms: 2990, vcu: set, field: right_speed, value: 00000000h, frames: 50}\n" WHEELS_SILENT},
+    /* the same, and then 101h comes every 200 ms: it shows the motion for a part of the time */
+    {HAZARD_NOT_STOPPING, NOT_OBEYED, &ROLLS, NULL,
+     "  - {at_ms: 2990, vcu: set, field: left_speed, value: 00000000h, frames: 50}\n"
+     "  - {at_ms: 2990, vcu: set, field: right_speed, value: 00000000h, frames: 50}\n"
+     "  - {at_ms: 3500, vcu: send_every, message: wheel_speed, every_ms: 200}\n"},
     {HAZARD_STEERING, ANOTHER_ANGLE,
      &(const stub_t){.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 400, .holds = true, .hold_ddeg = 200},
      &(const stub_t){.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 400, .holds = true},

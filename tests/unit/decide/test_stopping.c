@@ -212,16 +212,33 @@ void test_speeds_that_drop_out_hide_no_motion(void) {
     expect(false, true);
 }
 
-/* A stale 101h is not moving. */
+/* The time of a stale 101h is neither added nor subtracted. */
 /* Shows: FSM-12 */
-void test_stale_wheel_speeds_are_not_moving(void) {
+void test_stale_wheel_speeds_say_nothing(void) {
     trip_and_stop();
-    wheels_for(150, 5000, 5000);
-    wheels_fresh = false;
-    expect_faults_after(1000, false, false);
-    wheels_fresh = true;
+    wheels(5000, 5000);
     begin();
-    expect_after(200, false, true);
+    run(150);
+    wheels_fresh = false;
+    expect_faults_after(10000, false, false);
+    wheels_fresh = true;
+    expect_after(50, false, true);
+}
+
+/* 101h comes every 400 ms, and is fresh for 60 ms each time: 200 ms are complete in the fourth cycle. */
+/* Shows: FSM-12 */
+void test_a_slow_101h_hides_no_motion(void) {
+    trip_and_stop();
+    wheels(100, 0);
+    begin();
+    for (unsigned cycle = 0; cycle < 3; cycle++) {
+        wheels_fresh = true;
+        expect_faults_after(60, false, false);
+        wheels_fresh = false;
+        expect_faults_after(340, false, false);
+    }
+    wheels_fresh = true;
+    expect_after(20, false, true);
 }
 
 /* Before the first standstill the wheels may turn, because the vehicle is stopping. */
