@@ -120,7 +120,7 @@ void agv_core_keep_wiring(agv_core_t *core) {
 
 /*
  * Use the defaults, with topology, identifiers and `park` of this vehicle if these are valid. Without the status frame, if
- * its identifier is the one of a message.
+ * the identifiers are not valid, or its own is the one of a message.
  */
 static void use_default_config(agv_core_t *core) {
     agv_config_t *const config = &core->config;
