@@ -164,13 +164,19 @@ void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_
           config->steering_deviation_ms);
     spend(&budgets[AGV_BUDGET_THROTTLE], &checks->throttle, throttle_is_above(facts), elapsed_ms,
           config->throttle_deviation_ms);
-    agv_budget_add(&budgets[AGV_BUDGET_GEAR], gear_is_another(facts), elapsed_ms, config->gear_deviation_ms);
     agv_budget_add(&budgets[AGV_BUDGET_AUTOPILOT_OFF],
                    agv_commands_has(facts->commands, AGV_MSG_TURN_SIGNAL_COMMAND) && facts->commands->autopilot_off,
                    elapsed_ms, config->autopilot_off_ms);
+    if (facts->vehicle->gear == 0u) {
+        return; /* an invalid 0A3h hides nothing: the budgets of the gear do not change */
+    }
+    agv_budget_add(&budgets[AGV_BUDGET_GEAR], gear_is_another(facts), elapsed_ms, config->gear_deviation_ms);
+    if (!facts->gear_fresh) {
+        return; /* a slow 0A3h hides nothing */
+    }
     agv_budget_add(&budgets[AGV_BUDGET_THROTTLE_IN_PARK],
-                   facts->gear_fresh && (facts->vehicle->gear == (uint8_t)AGV_GEAR_P) && throttle_is_above_idle(facts),
-                   elapsed_ms, config->throttle_in_park_ms);
+                   (facts->vehicle->gear == (uint8_t)AGV_GEAR_P) && throttle_is_above_idle(facts), elapsed_ms,
+                   config->throttle_in_park_ms);
 }
 
 bool agv_motion_checks_doubts_wheels(const agv_motion_checks_t *checks, const agv_vehicle_t *vehicle) {

@@ -61,10 +61,11 @@ static uint8_t throttle_of(const hazard_t *hazard) {
     return hazard->messages[AGV_MSG_THROTTLE_STATUS].valid[0];
 }
 
-/** 0 while 0A3h is silent or has no valid gear. */
+/** 0 while 0A3h is silent, or its last frame has no valid gear. */
 static uint8_t gear_of(const hazard_t *hazard) {
     const hazard_message_t *seen = &hazard->messages[AGV_MSG_GEAR_STATUS];
-    return (hazard->t_ms - seen->valid_ms > hazard->config->gear_status_timeout_ms) ? 0 : seen->valid[0];
+    const bool is_silent = hazard->t_ms - seen->seen_ms > hazard->config->gear_status_timeout_ms;
+    return (is_silent || (seen->valid_ms != seen->seen_ms)) ? 0 : seen->valid[0];
 }
 
 static bool is_steering_stuck(const hazard_t *hazard) {
@@ -285,6 +286,11 @@ static bool is_in_grace(const hazard_t *hazard, const row_t *row) {
            (hazard->t_ms - mode->engaged_ms < hazard->config->engaged_grace_ms);
 }
 
+/** Without a gear, time neither adds to the conditions that it is a part of, nor takes away. */
+static bool lacks_gear(const hazard_t *hazard, const row_t *row) {
+    return ((row->holds == is_other_gear) || (row->holds == is_throttle_in_park)) && (gear_of(hazard) == 0);
+}
+
 /** Time in which a condition holds adds up; time in which it does not takes away. */
 static void add_up(hazard_t *hazard, unsigned r) {
     const row_t *row = &ROWS[r];
@@ -294,6 +300,8 @@ static void add_up(hazard_t *hazard, unsigned r) {
 
     if (is_manual) {
         *budget_ms -= long_manual ? STEP_MS * MANUAL_WEIGHT : STEP_MS;
+    } else if (lacks_gear(hazard, row)) {
+        /* as it was */
     } else {
         *budget_ms += holds(hazard, r) ? STEP_MS : -STEP_MS;
     }

@@ -565,6 +565,12 @@ static const struct {
     {HAZARD_NONE, NULL, NULL, &IGNORES_PARK, FALSE_PARK "  - {at_ms: 3040, vcu: mute, message: gear_status}\n"},
     {HAZARD_NONE, NULL, NULL, &(const stub_t){.setting = "class_gear_status_invalid: warn\n"},
      FALSE_PARK "  - {at_ms: 3040, vcu: set, field: gear, value: 03h}\n"},
+    /* two of three 0A3h have no gear: the others show D, and R is commanded */
+    {HAZARD_FALSE_NODE, "another gear than commanded", &(const stub_t){.setting = "class_gear_status_invalid: warn\n"},
+     NULL,
+     "  - {at_ms: 2000, vcu: ignore, message: gear_command}\n"
+     "  - {at_ms: 2000, vcu: set, field: gear, value: 03h, frames: 2, every_frames: 3}\n"
+     "  - {at_ms: 2100, ai: set, field: gear, value: 02h}\n"},
     /* 200 gaps of 1 ms; after a restart nobody knows of them */
     {HAZARD_FALSE_NODE, "commands come too fast", &IGNORES_FLOOD, NULL, FLOOD},
     {HAZARD_NONE, NULL, NULL, &IGNORES_FLOOD, FLOOD "  - {at_ms: 3250, supervisor: restart, cause: software}\n"},

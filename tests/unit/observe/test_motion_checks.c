@@ -789,11 +789,44 @@ void test_each_condition_of_throttle_in_park_counts(void) {
     facts.judged = false;
     run(1000);
     facts.judged = true;
-    run(50);
-    facts.gear_fresh = false; /* an interruption takes half of its time off */
-    run(10);
+    expect_after(100, IN_PARK);
+}
+
+/* 0A3h comes every 400 ms, and is fresh for 125 ms each time: 200 ms are complete in the second cycle. */
+/* Shows: SUP-5, THROTTLE_IN_PARK */
+void test_a_slow_0a3h_hides_no_throttle_in_park(void) {
+    vehicle.gear = AGV_GEAR_P;
+    vehicle.throttle = 100;
+    begin();
+    run(125);
+    facts.gear_fresh = false;
+    run(275);
+    TEST_ASSERT_FALSE(is_active(IN_PARK));
     facts.gear_fresh = true;
-    expect_after(55, IN_PARK);
+    run(74);
+    TEST_ASSERT_FALSE(is_active(IN_PARK));
+    run(1);
+    TEST_ASSERT_TRUE(is_active(IN_PARK));
+}
+
+/* Two of three 0A3h are invalid. */
+/* Shows: SUP-5, SUP-11, THROTTLE_IN_PARK, GEAR_DEVIATION */
+TEST_CASE(AGV_GEAR_P, AGV_FAULT_THROTTLE_IN_PARK, 200)
+TEST_CASE(AGV_GEAR_D, AGV_FAULT_GEAR_DEVIATION, 1000)
+void test_an_invalid_0a3h_now_and_then_hides_nothing(unsigned gear, unsigned fault, unsigned limit_ms) {
+    agv_commands_take(&commands, AGV_MSG_GEAR_COMMAND, (const uint8_t[8]){AGV_GEAR_R});
+    vehicle.throttle = 100;
+    vehicle.gear = (uint8_t)gear;
+    begin();
+    for (unsigned valid_ms = 0; valid_ms < limit_ms; valid_ms += 50) {
+        TEST_ASSERT_FALSE(is_active(fault));
+        vehicle.gear = 0;
+        run(100);
+        TEST_ASSERT_FALSE(is_active(fault));
+        vehicle.gear = (uint8_t)gear;
+        run(50);
+    }
+    TEST_ASSERT_TRUE(is_active(fault));
 }
 
 /* ---- Two speeds (SUP-12) ---- */
