@@ -5,7 +5,7 @@
 
 #include "text/units.h"
 
-enum { CENTRE_DDEG = 9000 };
+enum { CENTRE_DDEG = 9000, SAFE_MS = 300 };
 
 static const hazard_info_t INFOS[HAZARD_KINDS] = {
     [HAZARD_NONE] = {"none", "no hazard", ""},
@@ -78,8 +78,20 @@ void hazard_init(hazard_t *hazard, const scenario_t *scenario, const scenario_te
     hazard_rows_init(hazard);
 }
 
+/** On a shared bus the supervisor never commands motion, on a gateway not while it sends the safe commands (H3). */
+static void check_motion(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
+    const bool moves = ((message == AGV_MSG_GEAR_COMMAND) && (frame->data[0] != AGV_GEAR_P)) ||
+                       ((message == AGV_MSG_THROTTLE_COMMAND) && (frame->data[0] != 0));
+    const bool is_safe = hazard->trip.tripped && hazard_is_safe_now(hazard, SAFE_MS) && !hazard_reset_was_asked(hazard);
+
+    if (moves && (!hazard->gateway || is_safe)) {
+        hazard_found(hazard, HAZARD_FALSE_COMMAND, "the supervisor commands motion");
+    }
+}
+
 /** A command of the supervisor on the vehicle side: its own, or passed on. */
 static void on_own_command(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
+    check_motion(hazard, message, frame);
     if ((message == AGV_MSG_GEAR_COMMAND) && (frame->data[0] == AGV_GEAR_P)) {
         hazard_park_frame(hazard);
     }

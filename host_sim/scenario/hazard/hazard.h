@@ -42,7 +42,6 @@ enum {
     HAZARD_ROWS_MAX = 48,
     HAZARD_SCORES_MAX = 5,
     HAZARD_RECENT = 256,
-    HAZARD_SPEEDS = 11,
     HAZARD_ANGLES = 64,
     HAZARD_ENGAGEMENTS = 3,
     HAZARD_FLOOD_SLOTS = 10
@@ -113,6 +112,7 @@ typedef struct {
     hazard_button_t pin;      /**< the push button, with its bouncing */
     bool was_closed;
     uint64_t closed_ms;    /**< the safety output was closed */
+    uint32_t unasked_ms;   /**< time in which P was not commanded */
     uint32_t unparked_ms;  /**< sum of the time in which P was not confirmed */
     uint32_t engaged_ms;   /**< the same of the autopilot that is off */
     uint32_t confirmed_ms; /**< both, without a break */
@@ -210,11 +210,10 @@ typedef struct {
     bool throttle_is_newest;
     uint64_t asked_off_ms;      /**< the AI computer has been asking for autopilot off since then; 0: it does not */
     uint64_t asked_all_ms[256]; /**< by alive counter: when its 43Fh asked for the same as the safe one; 0: never */
-    int32_t speeds_mm_s[HAZARD_SPEEDS];
-    uint32_t speed_at;
     uint32_t passed[HAZARD_FLOOD_SLOTS];
     uint32_t passed_at;
-    uint64_t rolling_since_ms;
+    uint64_t turned_ms;     /**< 101h reported no standstill at that time */
+    uint32_t rolled_halves; /**< half ms in which the vehicle rolls, although it was tripped */
     int32_t still_at_ddeg;  /**< 067h: the last angle */
     int32_t moved_ddeg;     /**< 067h: way to and fro, since */
     int32_t really_at_ddeg; /**< the same of the real steering */

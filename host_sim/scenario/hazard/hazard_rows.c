@@ -6,7 +6,7 @@
 
 enum { STEP_MS = 10, MARGIN_MS = 1500, MOVING_MM_S = 300, REACTED_MS = 350, REENGAGE_MS = 100, MANUAL_WEIGHT = 2 };
 enum { SCORE_CAP = 4, EVENT_MS = 400, STILL_MARGIN_MS = 200, DEVIATION_DDEG = 50, CLOSE = 16 };
-enum { THROTTLE_SPARE = 10, IDLE_COUNTS = 2, FALL_MS = 700, EPS_ANGLE_MODE = 0x01, MODE_BYTE = 6, MODE_BITS = 0xC0 };
+enum { THROTTLE_SPARE = 10, FALL_MS = 700, EPS_ANGLE_MODE = 0x01, MODE_BYTE = 6, MODE_BITS = 0xC0 };
 
 /** How a row is evaluated. */
 typedef enum {
@@ -79,7 +79,7 @@ static bool is_steering_stuck(const hazard_t *hazard) {
 }
 
 static bool is_throttle_in_park(const hazard_t *hazard) {
-    return (gear_of(hazard) == AGV_GEAR_P) && (throttle_of(hazard) > IDLE_COUNTS);
+    return (gear_of(hazard) == AGV_GEAR_P) && (throttle_of(hazard) > hazard->config->throttle_idle_counts);
 }
 
 static bool is_throttle_too_high(const hazard_t *hazard) {
@@ -92,7 +92,7 @@ static bool is_throttle_too_high(const hazard_t *hazard) {
 static bool is_other_gear(const hazard_t *hazard) {
     const uint8_t gear = gear_of(hazard);
 
-    return hazard->is_commanded[AGV_MSG_GEAR_COMMAND] && (throttle_of(hazard) > IDLE_COUNTS) &&
+    return hazard->is_commanded[AGV_MSG_GEAR_COMMAND] && (throttle_of(hazard) > hazard->config->throttle_idle_counts) &&
            ((gear == AGV_GEAR_D) || (gear == AGV_GEAR_R)) &&
            ((uint16_t)gear != hazard->commanded[AGV_MSG_GEAR_COMMAND]);
 }

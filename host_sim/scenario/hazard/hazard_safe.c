@@ -5,7 +5,7 @@
 
 enum { SIGNALS_BYTES = 7, IN_FLIGHT_MS = 12, GONE_MS = 700, RESET_GONE_MS = 200, PENDING_MS = 50, PRESS_SEEN_MS = 100 };
 enum { CONFIRM_MARGIN_MS = 300, STALE_MARGIN_MS = 100 };
-enum { SPEED_SLOT_MS = 100, SLOWER_MM_S = 50, MOVING_MM_S = 300, MARGIN_MS = 1500 };
+enum { ASKED_MS = 100, MOVING_MM_S = 300, MARGIN_MS = 1500, PRESS_SEEN_LESS_MS = 200 };
 enum { UPS_OF_RELEASE = 2, UPS_MAX = 3 };
 enum { ALARMS_BYTE = 4, FLAGS_BYTE = 6, PRESS_MARGIN_MS = 20 };
 
@@ -28,6 +28,7 @@ static void begin_trip(hazard_t *hazard) {
     forget_press(hazard, &trip->button);
     forget_press(hazard, &trip->reported);
     forget_press(hazard, &trip->pin);
+    trip->unasked_ms = 0;
     trip->unparked_ms = 0;
     trip->engaged_ms = 0;
     trip->confirmed_ms = 0;
@@ -37,7 +38,7 @@ static void begin_trip(hazard_t *hazard) {
 /** Gateway: the AI computer asked for the same as the safe 43Fh, which is passed on with its alive counter. */
 static bool is_of_ai(const hazard_t *hazard, uint8_t counter) {
     const uint64_t asked_ms = hazard->asked_all_ms[counter];
-    return hazard->gateway && (asked_ms != 0) && (hazard->t_ms - asked_ms <= SPEED_SLOT_MS);
+    return hazard->gateway && (asked_ms != 0) && (hazard->t_ms - asked_ms <= ASKED_MS);
 }
 
 void hazard_safe_frame(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
@@ -65,7 +66,9 @@ static bool is_fresh(const hazard_t *hazard, agv_message_t message, uint32_t dea
 static void check_confirmation(hazard_t *hazard) {
     hazard_trip_t *trip = &hazard->trip;
     const hazard_message_t *gear = &hazard->messages[AGV_MSG_GEAR_STATUS];
-    const bool alive = is_fresh(hazard, AGV_MSG_VEHICLE_STATUS, hazard->config->vcu_heartbeat_timeout_ms);
+    const hazard_message_t *vcu = &hazard->messages[AGV_MSG_VEHICLE_STATUS];
+    const bool alive = hazard->t_ms - vcu->changed_ms <=
+                       (uint64_t)hazard->config->vcu_heartbeat_timeout_ms + STALE_MARGIN_MS; /* a frozen one is not */
     const bool off = alive && !hazard->mode.autopilot;
     const bool parked = gear->has_valid && (gear->valid[0] == AGV_GEAR_P) &&
                         is_fresh(hazard, AGV_MSG_GEAR_STATUS, hazard->config->gear_status_timeout_ms);
@@ -162,25 +165,47 @@ static bool is_silent_after_standing(const hazard_t *hazard) {
            (hazard->stood_ms >= hazard->trip.first_ms);
 }
 
-/** The safe commands are sent, and the vehicle does not become slower (H1). */
-static void check_stopping(hazard_t *hazard) {
-    const int32_t now_mm_s = hazard_speed_mm_s(hazard);
-    const int32_t before_mm_s = hazard->speeds_mm_s[hazard->speed_at];
+/** 101h has reported standstill for so long that it counts as such. */
+static bool has_stood(hazard_t *hazard) {
+    hazard->turned_ms = hazard_is_said_to_stand(hazard) ? hazard->turned_ms : hazard->t_ms;
+    return hazard->t_ms - hazard->turned_ms >= hazard->config->standstill_ms;
+}
 
-    hazard->speeds_mm_s[hazard->speed_at] = now_mm_s;
-    hazard->speed_at = (hazard->speed_at + 1) % HAZARD_SPEEDS;
-    if (!hazard->closed || !hazard->trip.tripped || (now_mm_s < MOVING_MM_S) ||
-        (before_mm_s - now_mm_s >= SLOWER_MM_S) || hazard_is_said_to_stand(hazard)) {
-        hazard->rolling_since_ms = hazard->t_ms;
+/**
+ * The time in which the vehicle rolls, and 101h shows it: a ms adds 2 halves, and a ms in which it does not takes one away.
+ * A silent 101h changes nothing, a standstill begins it anew.
+ */
+static void follow_rolling(hazard_t *hazard) {
+    const uint32_t most = 2 * (uint32_t)MARGIN_MS;
+
+    if (has_stood(hazard) || !hazard->closed || !hazard->trip.tripped) {
+        hazard->rolled_halves = 0;
+    } else if ((hazard_speed_mm_s(hazard) < MOVING_MM_S) || hazard_is_said_to_stand(hazard)) {
+        hazard->rolled_halves -= (hazard->rolled_halves != 0) ? 1 : 0;
     } else if (is_silent_after_standing(hazard)) {
-        hazard->rolling_since_ms += SPEED_SLOT_MS; /* this time does not count, and that before it does */
+        /* as it was */
     } else {
-        /* it rolls, and 101h shows it */
+        hazard->rolled_halves += (hazard->rolled_halves < most) ? 2 : 0;
     }
-    if (hazard->trip.tripped &&
-        (hazard->t_ms - hazard->trip.first_ms > (uint64_t)hazard->config->stop_timeout_ms + MARGIN_MS) &&
-        (hazard->t_ms - hazard->rolling_since_ms > MARGIN_MS)) {
+}
+
+/** The safe commands are sent, and the vehicle moves (H1). */
+static void check_stopping(hazard_t *hazard) {
+    follow_rolling(hazard);
+    if ((hazard->t_ms - hazard->trip.first_ms > (uint64_t)hazard->config->stop_timeout_ms + MARGIN_MS) &&
+        (hazard->rolled_halves >= 2 * (uint32_t)MARGIN_MS)) {
         hazard_found(hazard, HAZARD_NOT_STOPPING, "the vehicle does not obey the safe commands");
+    }
+}
+
+/** P is a part of the safe state, from the trip on or from standstill on (H4). */
+static void check_park(hazard_t *hazard) {
+    hazard_trip_t *trip = &hazard->trip;
+    const uint32_t wait_ms = (hazard->config->park == AGV_PARK_AT_STANDSTILL) ? hazard->config->park_timeout_ms : 0;
+
+    trip->unasked_ms += (trip->parks || (trip->free_ms != hazard->t_ms)) ? 0 : 1;
+    if (!trip->parks && (trip->unasked_ms > wait_ms + (uint32_t)CONFIRM_MARGIN_MS)) {
+        hazard_found(hazard, HAZARD_UNCONFIRMED, "gear P is not commanded");
     }
 }
 
@@ -222,15 +247,15 @@ void hazard_safe_tick(hazard_t *hazard) {
     const bool was_closed = trip->was_closed;
 
     follow_transmitter(hazard);
-    follow_button(hazard, &trip->button, hazard->view.vehicle.button_1, 0);
+    follow_button(hazard, &trip->button, hazard->view.vehicle.button_1,
+                  hazard->config->reset_hold_ms - (uint32_t)PRESS_SEEN_LESS_MS);
     follow_button(hazard, &trip->pin, hazard->view.pin_is_down, 0);
     check_reset(hazard, was_closed);
     follow_output(hazard, was_closed);
     const bool hangs = hazard->view.is_halted; /* the watchdog ends that, after its period */
     if (trip->tripped && hazard->closed && !hangs) {
         check_confirmation(hazard);
+        check_park(hazard);
     }
-    if ((hazard->t_ms % SPEED_SLOT_MS) == 0) {
-        check_stopping(hazard);
-    }
+    check_stopping(hazard);
 }

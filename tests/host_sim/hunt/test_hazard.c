@@ -17,6 +17,7 @@ enum { TEXT_SIZE = 4096, NEVER = 0, READY_MS = 600, TRIP_MS = 3000, QUEUE = 16, 
 typedef struct {
     bool gateway;
     bool rolls;           /**< a vehicle without brakes */
+    bool coasts;          /**< a vehicle that becomes slower by 60 mm/s each second */
     uint32_t open_ms;     /**< the output opens, and stays open */
     uint32_t safe_ms;     /**< safe commands, from then on */
     uint32_t safe_end_ms; /**< until then */
@@ -25,6 +26,7 @@ typedef struct {
     int32_t hold_ddeg;    /**< more than the real angle at safe_ms */
     uint32_t hold_ms;     /**< 065h begins; NEVER: with the others */
     unsigned passes;      /**< so many times each command of the AI computer */
+    bool passes_on;       /**< also beside safe commands */
     bool only_engaged;    /**< passes while the autopilot is engaged */
     uint32_t forges_ms;   /**< a throttle that nobody commanded */
     int32_t forges_ddeg;  /**< not a throttle but this angle; 0: a throttle */
@@ -129,7 +131,7 @@ static void act(void *ctx, uint64_t now_ms) {
     hal_safety_output_set(scenario_testbed_port(&testbed),
                           (t_ms >= READY_MS) && ((stub->open_ms == NEVER) || (t_ms < stub->open_ms)));
     for (unsigned i = 0; i < queued; i++) {
-        if (!is_safe || (towards[i] == HAL_CAN_AI)) {
+        if (!is_safe || stub->passes_on || (towards[i] == HAL_CAN_AI)) {
             (void)hal_can_send(scenario_testbed_port(&testbed), towards[i], &queue[i]);
         }
     }
@@ -174,8 +176,12 @@ static hazard_kind_t play(const stub_t *supervisor, const char *steps) {
                    "  - {at_ms: 1000, ai: drive, gear: D, throttle_pct: 60, steer_deg: 20}\n"
                    "  - {at_ms: 1500, operator: engage}\n%sexpect: {states: any}\n",
                    supervisor->gateway ? "gateway" : "shared", (supervisor->setting != NULL) ? "config:\n  " : "",
-                   (supervisor->setting != NULL) ? supervisor->setting : "", supervisor->rolls ? "false" : "true",
-                   supervisor->rolls ? "  coasting_mm_s2: 1\n  braking_mm_s2: 1\n  locked_mm_s2: 1\n" : "", steps);
+                   (supervisor->setting != NULL) ? supervisor->setting : "",
+                   (supervisor->rolls || supervisor->coasts) ? "false" : "true",
+                   supervisor->rolls    ? "  coasting_mm_s2: 1\n  braking_mm_s2: 1\n  locked_mm_s2: 1\n"
+                   : supervisor->coasts ? "  coasting_mm_s2: 60\n  braking_mm_s2: 60\n  locked_mm_s2: 60\n"
+                                        : "",
+                   steps);
     TEST_ASSERT_TRUE(scenario_read_text(&scenario, "test", text, NULL));
     TEST_ASSERT_TRUE(scenario_testbed_init(&testbed, &scenario));
     hazard_init(&hazard, &scenario, &testbed);
@@ -356,11 +362,22 @@ static const struct {
     {HAZARD_NONE, NULL, NULL, &ROLLS,
      "  - {at_ms: 2990, vcu: set, field: left_speed, value: 00000000h, frames: 50}\n"
      "  - {at_ms: 2990, vcu: set, field: right_speed, value: 00000000h, frames: 50}\n" WHEELS_SILENT},
+    /* one that becomes slower has to stop in time, too; one 101h in six that reads 0 is no standstill */
+    {HAZARD_NOT_STOPPING, NOT_OBEYED, &(const stub_t){.coasts = true, .safe_ms = TRIP_MS},
+     &(const stub_t){.coasts = true, .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 5000}, ""},
+    {HAZARD_NOT_STOPPING, NOT_OBEYED, &ROLLS, &ROLLS_AND_OPENS,
+     "  - {at_ms: 2990, vcu: set, field: left_speed, value: 00000000h, frames: 9, every_frames: 55}\n"
+     "  - {at_ms: 2990, vcu: set, field: right_speed, value: 00000000h, frames: 9, every_frames: 55}\n"},
     /* the same, and then 101h comes every 200 ms: it shows the motion for a part of the time */
     {HAZARD_NOT_STOPPING, NOT_OBEYED, &ROLLS, NULL,
      "  - {at_ms: 2990, vcu: set, field: left_speed, value: 00000000h, frames: 50}\n"
      "  - {at_ms: 2990, vcu: set, field: right_speed, value: 00000000h, frames: 50}\n"
      "  - {at_ms: 3500, vcu: send_every, message: wheel_speed, every_ms: 200}\n"},
+    {HAZARD_FALSE_COMMAND, "the supervisor commands motion",
+     &(const stub_t){.safe_ms = TRIP_MS, .forges_ms = TRIP_MS + 1000}, &STAYS, ""},
+    {HAZARD_FALSE_COMMAND, "the supervisor commands motion",
+     &(const stub_t){.gateway = true, .passes = 1, .passes_on = true, .safe_ms = TRIP_MS},
+     &(const stub_t){.gateway = true, .passes = 1, .safe_ms = TRIP_MS}, ""},
     {HAZARD_STEERING, ANOTHER_ANGLE,
      &(const stub_t){.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 400, .holds = true, .hold_ddeg = 200},
      &(const stub_t){.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 400, .holds = true},
@@ -433,6 +450,10 @@ static const struct {
     {HAZARD_NONE, NULL, NULL, &FORGETS,
      "  - {at_ms: 3000, operator: disengage}\n  - {at_ms: 3990, supervisor: hang, for_ms: 50}\n"
      "  - {at_ms: 4000, operator: engage}\n"},
+    {HAZARD_UNCONFIRMED, "gear P is not commanded", &(const stub_t){.safe_ms = TRIP_MS, .parks_ms = TRIP_MS + 400},
+     &(const stub_t){.safe_ms = TRIP_MS, .parks_ms = TRIP_MS + 200}, ""},
+    {HAZARD_UNCONFIRMED, "the autopilot is not confirmed as off", &STAYS,
+     &(const stub_t){.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 700}, "  - {at_ms: 3200, vcu: freeze_counter}\n"},
     {HAZARD_UNCONFIRMED, "gear P is not confirmed", &STAYS,
      &(const stub_t){.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 510},
      "  - {at_ms: 2900, vcu: set, field: gear, value: 01h}\n"},
@@ -447,6 +468,8 @@ static const struct {
     {HAZARD_RESET, NOT_PRESSED, &RESETS, NULL, ""},
     {HAZARD_RESET, NOT_PRESSED, &RESETS, NULL, "  - {at_ms: 2000, operator: press, button: 1}\n"},
     {HAZARD_RESET, NOT_RELEASED, &RESETS, NULL, "  - {at_ms: 4000, operator: press, button: 1}\n"},
+    {HAZARD_RESET, NOT_RELEASED, &RESETS, NULL, /* a tap */
+     "  - {at_ms: 4000, operator: press, button: 1}\n  - {at_ms: 4050, operator: release, button: 1}\n"},
     {HAZARD_RESET, NOT_RELEASED, &RESETS, &RESETS_BY_PIN, PRESS_PIN},
     {HAZARD_RESET, NOT_RELEASED, &RESETS_BY_PIN, &RESETS_BY_BOTH, PRESS_1},
     {HAZARD_RESET, NOT_RELEASED, &RESETS_BY_PIN, NULL, "  - {at_ms: 4500, board: press}\n"},
@@ -565,6 +588,8 @@ static const struct {
     {HAZARD_NONE, NULL, NULL, &IGNORES_PARK, FALSE_PARK "  - {at_ms: 3040, vcu: mute, message: gear_status}\n"},
     {HAZARD_NONE, NULL, NULL, &(const stub_t){.setting = "class_gear_status_invalid: warn\n"},
      FALSE_PARK "  - {at_ms: 3040, vcu: set, field: gear, value: 03h}\n"},
+    {HAZARD_NONE, NULL, NULL, &(const stub_t){.setting = "throttle_idle_counts: 25\n"},
+     FALSE_PARK "  - {at_ms: 3000, vcu: set, field: throttle, value: 14h}\n"},
     /* two of three 0A3h have no gear: the others show D, and R is commanded */
     {HAZARD_FALSE_NODE, "another gear than commanded", &(const stub_t){.setting = "class_gear_status_invalid: warn\n"},
      NULL,
