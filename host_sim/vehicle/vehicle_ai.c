@@ -1,6 +1,4 @@
 /* The AI computer: its four commands. */
-#include <stdlib.h>
-
 #include "vehicle/vehicle_internal.h"
 
 #define STANDING_MM_S 50
@@ -43,11 +41,16 @@ static void hear_gear(vehicle_t *vehicle, uint8_t gear) {
     ai->gear = gear;
 }
 
+/** Also of the lowest number, which has no amount. */
+static bool turns(int32_t speed_mm_s) {
+    return (speed_mm_s >= STANDING_MM_S) || (speed_mm_s <= -STANDING_MM_S);
+}
+
 static void hear_wheels(vehicle_ai_t *ai, const uint8_t data[AGV_DLC]) {
     agv_wheel_speed_t speed;
 
     (void)agv_unpack_wheel_speed(&speed, data);
-    ai->moving = (abs(speed.left_mm_s) >= STANDING_MM_S) || (abs(speed.right_mm_s) >= STANDING_MM_S);
+    ai->moving = turns(speed.left_mm_s) || turns(speed.right_mm_s);
     ai->waits = ai->waits && ai->moving;
 }
 
