@@ -165,7 +165,7 @@ static bool is_silent_after_standing(const hazard_t *hazard) {
            (hazard->stood_ms >= hazard->trip.first_ms);
 }
 
-/** 101h has reported standstill for so long that it counts as such. */
+/** 101h has reported standstill for standstill_ms without a break. */
 static bool has_stood(hazard_t *hazard) {
     hazard->turned_ms = hazard_is_said_to_stand(hazard) ? hazard->turned_ms : hazard->t_ms;
     return hazard->t_ms - hazard->turned_ms >= hazard->config->standstill_ms;
