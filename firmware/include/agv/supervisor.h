@@ -92,8 +92,8 @@ agv_fault_t agv_supervisor_first_active(const agv_supervisor_t *supervisor);
 bool agv_supervisor_has_fault(const agv_supervisor_t *supervisor, agv_fault_t fault);
 
 /**
- * Age of the last frame of a message in ms, at the last tick; if none was received, the time since the start. UINT32_MAX from
- * some 6000 ms on (messages are aged in turn, one each tick), and for AGV_MSG_NONE and values above.
+ * Age of the last frame of a message in ms, at the last tick; if none was received, the time since the start. UINT32_MAX when
+ * the age is more than some 6000 ms (messages are aged in turn, one each tick), and for AGV_MSG_NONE and values above.
  */
 uint32_t agv_supervisor_age_ms(const agv_supervisor_t *supervisor, agv_message_t message);
 
@@ -104,8 +104,8 @@ uint32_t agv_supervisor_age_ms(const agv_supervisor_t *supervisor, agv_message_t
 bool agv_supervisor_is_fresh(const agv_supervisor_t *supervisor, agv_message_t message);
 
 /**
- * Time of the last tick in ms; the time of the start when there was no tick yet. Later than the time that was passed to the tick
- * when a frame before it had a later time stamp.
+ * Time of the last tick in ms; the time of the start when there was no tick yet. When a frame before the tick had a later time
+ * stamp than the tick, it is the frame's time.
  */
 uint32_t agv_supervisor_tick_ms(const agv_supervisor_t *supervisor);
 

@@ -10,7 +10,7 @@
 
 #include "hal/hal.h"
 
-/** The electrical state of a contact at this moment: not debounced, and not inverted by the core. */
+/** The position of a contact at this moment: not debounced, and not inverted by the core. */
 typedef enum { HAL_CONTACT_NONE = 0, HAL_CONTACT_OPEN = 1, HAL_CONTACT_CLOSED = 2 } hal_contact_t;
 
 /**
@@ -19,7 +19,7 @@ typedef enum { HAL_CONTACT_NONE = 0, HAL_CONTACT_OPEN = 1, HAL_CONTACT_CLOSED = 
  * button ends without a reset.
  */
 typedef struct {
-    uint8_t output_feedback; /**< contact of the safety output, read back: OPEN is the safe position (HW-1) */
+    uint8_t output_feedback; /**< position of the output (not of its mirror contact): OPEN is the safe one (HW-1) */
     uint8_t emergency_stop;  /**< normally closed circuit: OPEN stops, a broken wire too (HW-2) */
     uint8_t reset_button;    /**< push button, CLOSED = pressed (HW-3) */
 } hal_inputs_t;

@@ -12,8 +12,8 @@ typedef enum {
     HAL_RESET_POWER_ON, /**< the only cause after which the supervisor may start in INIT (FSM-7) */
     HAL_RESET_WATCHDOG,
     HAL_RESET_BROWN_OUT, /**< the supply was too low for a moment */
-    HAL_RESET_LOCK_UP,  /**< the processor could not go on: a fault in a fault handler, or an end that the port noted */
-    HAL_RESET_SOFTWARE, /**< requested by the program, but not by the port */
+    HAL_RESET_LOCK_UP, /**< the processor could not go on: a fault in a fault handler, or the port ended the run (hal_end_t) */
+    HAL_RESET_SOFTWARE, /**< the application asked for it; an end by the port itself is HAL_RESET_LOCK_UP */
     HAL_RESET_UNKNOWN
 } hal_reset_cause_t;
 
