@@ -381,7 +381,7 @@ void why_end(why_t *why, uint64_t t_us) {
         why_init_check(why, t_us);
         why_init_end(why, t_us);
         const bool is_known = why->is_recorder && (why->startup_missing != 0); /* a recorder holds no messages */
-        why->missing = is_known ? why->startup_missing : (uint16_t)(why->missing | why->startup_missing);
+        why->missing = is_known ? why->startup_missing : why_init_words(why->missing | why->startup_missing);
     }
     for (size_t i = 0; i < why->fault_count; i++) {
         why_fault_t *entry = &why->faults[why->fault_order[i]];

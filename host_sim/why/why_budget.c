@@ -35,7 +35,11 @@ static bool is_above_idle(const why_t *why) {
 static bool gear_is_another(const why_t *why) {
     const uint32_t gear = why->facts.gear;
     return why->facts.command_known[AGV_MSG_GEAR_COMMAND] && ((gear == AGV_GEAR_D) || (gear == AGV_GEAR_R)) &&
-           (gear != why->facts.gear_command) && is_above_idle(why);
+           (gear != why->facts.gear_command);
+}
+
+static bool is_driven_in_another_gear(const why_t *why) {
+    return gear_is_another(why) && is_above_idle(why);
 }
 
 static bool off_is_ignored(const why_t *why) {
@@ -100,7 +104,7 @@ static const row_t rows[] = {
      AGV_SETTING_throttle_deviation_ms, throttle_is_above},
     {AGV_FAULT_GEAR_DEVIATION, true,
      BIT_OF(AGV_MSG_GEAR_STATUS) | BIT_OF(AGV_MSG_THROTTLE_STATUS) | BIT_OF(AGV_MSG_GEAR_COMMAND),
-     AGV_SETTING_gear_deviation_ms, gear_is_another},
+     AGV_SETTING_gear_deviation_ms, is_driven_in_another_gear},
     {AGV_FAULT_AUTOPILOT_OFF_IGNORED, true, BIT_OF(AGV_MSG_TURN_SIGNAL_COMMAND), AGV_SETTING_autopilot_off_ms,
      off_is_ignored},
     {AGV_FAULT_THROTTLE_IN_PARK, true, BIT_OF(AGV_MSG_THROTTLE_STATUS) | BIT_OF(AGV_MSG_GEAR_STATUS),
@@ -140,6 +144,11 @@ static uint64_t budget_counts_from(const why_t *why, const row_t *row) {
     return row->judged ? why_judged_us(why) : 0;
 }
 
+/** Another gear with the throttle at idle neither adds nor takes. */
+static bool shows_nothing(const why_t *why, const row_t *row) {
+    return (row->is_bad == is_driven_in_another_gear) && gear_is_another(why) && !is_above_idle(why);
+}
+
 /** Count the time since the last call: a bad microsecond adds 2, a good one takes 1. */
 static void count(const why_t *why, const row_t *row, why_tracker_t *tracker, uint64_t t_us) {
     const uint64_t counts_us = budget_counts_from(why, row);
@@ -151,7 +160,7 @@ static void count(const why_t *why, const row_t *row, why_tracker_t *tracker, ui
             tracker->began_us = (tracker->value == 0) ? tracker->bad_since_us : tracker->began_us;
             tracker->value += 2 * elapsed_us;
             tracker->value = (tracker->value < full) ? tracker->value : full;
-        } else {
+        } else if (!shows_nothing(why, row)) {
             tracker->value -= (tracker->value > elapsed_us) ? elapsed_us : tracker->value;
         }
     }

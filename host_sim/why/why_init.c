@@ -63,7 +63,13 @@ static uint32_t missing_now(const why_t *why, uint64_t t_us) {
     missing |= are_fresh(why, t_us) ? 0 : AGV_MISSING_MESSAGES;
     missing |= is_slow(why, t_us) ? 0 : AGV_MISSING_STANDSTILL;
     missing |= has_trip_cause(why) ? AGV_MISSING_TRIP_CAUSE : 0;
+    missing |= (why->facts.throttle > why->config.throttle_idle_counts) ? AGV_MISSING_THROTTLE : 0;
     return missing;
+}
+
+uint16_t why_init_words(uint32_t missing) {
+    const bool drives = (missing & (AGV_MISSING_MANUAL | AGV_MISSING_STANDSTILL)) != 0;
+    return (uint16_t)(drives ? (missing & ~AGV_MISSING_THROTTLE) : missing);
 }
 
 void why_init_start(why_t *why) {
@@ -96,5 +102,5 @@ void why_init_end(why_t *why, uint64_t t_us) {
         missing |= (counts && (last_us + hold_us >= t_us)) ? (1u << bit) : 0;
     }
     why->lacking = (uint16_t)missing;
-    why->missing = why->lacking;
+    why->missing = why_init_words(missing);
 }

@@ -229,6 +229,8 @@ bool why_confirm_waits_for_park(const why_t *why, uint64_t t_us);
 void why_init_start(why_t *why);
 void why_init_check(why_t *why, uint64_t t_us);
 void why_init_end(why_t *why, uint64_t t_us);
+/** AGV_MISSING_* bits as the words name them: throttle only at standstill in manual, because a vehicle that drives has some. */
+uint16_t why_init_words(uint32_t missing);
 /** Whether both wheels report standstill. */
 bool why_wheels_are_slow(const why_t *why);
 /** Whether the speed of 363h is that of standstill. */

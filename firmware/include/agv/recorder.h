@@ -48,7 +48,7 @@ typedef enum {
 #define AGV_MISSING_MANUAL 0x20u     /**< 363h does not report manual */
 #define AGV_MISSING_BUTTON 0x40u    /**< the press had no rising edge after the trip, or the button's signal was lost */
 #define AGV_MISSING_MESSAGES 0x80u  /**< a status message whose silence trips is not fresh */
-#define AGV_MISSING_THROTTLE 0x100u /**< 050h is above idle, invalid or silent */
+#define AGV_MISSING_THROTTLE 0x100u /**< 050h is above idle; at a reset also invalid or silent */
 #define AGV_MISSING_RELEASED 0x200u /**< the button was held for longer than reset_hold_max_ms */
 #define AGV_MISSING_OUTPUT 0x400u   /**< the contact of the safety output does not read open (HW-1) */
 #define AGV_MISSING_ALL 0x7FFu      /**< all of these bits */

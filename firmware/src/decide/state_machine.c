@@ -44,8 +44,8 @@ static bool has_cause(uint8_t fault) {
 }
 
 static uint32_t missing_in_init(const agv_fault_summary_t *faults, uint32_t facts) {
-    const uint32_t needed =
-        AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_MANUAL | AGV_FACT_MESSAGES | AGV_FACT_OUTPUT_OPEN;
+    const uint32_t needed = AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_MANUAL | AGV_FACT_MESSAGES |
+                            AGV_FACT_IDLE | AGV_FACT_OUTPUT_OPEN;
     uint32_t missing = needed & ~facts;
     missing |= ((facts & AGV_FACT_SLOW) == 0u) ? AGV_MISSING_STANDSTILL : 0u;
     missing |= ((facts & AGV_FACT_ENGAGED) != 0u) ? AGV_FACT_MANUAL : 0u;

@@ -20,7 +20,7 @@
 #define AGV_FACT_STANDSTILL AGV_MISSING_STANDSTILL
 #define AGV_FACT_MANUAL AGV_MISSING_MANUAL
 #define AGV_FACT_MESSAGES AGV_MISSING_MESSAGES  /**< every trip-class status message is fresh */
-#define AGV_FACT_IDLE AGV_MISSING_THROTTLE      /**< 050h is at idle */
+#define AGV_FACT_IDLE AGV_MISSING_THROTTLE      /**< 050h is at idle; in INIT: it is not above idle */
 #define AGV_FACT_OUTPUT_OPEN AGV_MISSING_OUTPUT /**< the contact reads open, is not read back, or may be closed */
 #define AGV_FACT_ENGAGED 0x1000u
 #define AGV_FACT_AI_ALIVE 0x2000u

@@ -114,15 +114,10 @@ static bool throttle_is_above(const agv_motion_facts_t *facts) {
             ((uint32_t)facts->commands->throttle + facts->config->throttle_deviation_counts));
 }
 
-static bool throttle_is_above_idle(const agv_motion_facts_t *facts) {
-    return facts->vehicle->throttle > facts->config->throttle_idle_counts;
-}
-
 static bool gear_is_another(const agv_motion_facts_t *facts) {
     const uint32_t gear = facts->vehicle->gear;
     return agv_commands_has(facts->commands, AGV_MSG_GEAR_COMMAND) &&
-           ((gear == (uint32_t)AGV_GEAR_D) || (gear == (uint32_t)AGV_GEAR_R)) && (gear != facts->commands->gear) &&
-           throttle_is_above_idle(facts);
+           ((gear == (uint32_t)AGV_GEAR_D) || (gear == (uint32_t)AGV_GEAR_R)) && (gear != facts->commands->gear);
 }
 
 static bool speeds_are_known(const agv_vehicle_t *vehicle) {
@@ -170,13 +165,16 @@ void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_
     if (facts->vehicle->gear == 0u) {
         return; /* an invalid 0A3h hides nothing: the budgets of the gear do not change */
     }
-    agv_budget_add(&budgets[AGV_BUDGET_GEAR], gear_is_another(facts), elapsed_ms, config->gear_deviation_ms);
+    const bool another = gear_is_another(facts);
+    const bool idle = agv_vehicle_throttle_is_idle(facts->vehicle, config);
+    if (!another || !idle) { /* another gear with the throttle at idle hides nothing */
+        agv_budget_add(&budgets[AGV_BUDGET_GEAR], another, elapsed_ms, config->gear_deviation_ms);
+    }
     if (!facts->gear_fresh) {
         return; /* a slow 0A3h hides nothing */
     }
-    agv_budget_add(&budgets[AGV_BUDGET_THROTTLE_IN_PARK],
-                   (facts->vehicle->gear == (uint8_t)AGV_GEAR_P) && throttle_is_above_idle(facts), elapsed_ms,
-                   config->throttle_in_park_ms);
+    agv_budget_add(&budgets[AGV_BUDGET_THROTTLE_IN_PARK], (facts->vehicle->gear == (uint8_t)AGV_GEAR_P) && !idle,
+                   elapsed_ms, config->throttle_in_park_ms);
 }
 
 bool agv_motion_checks_doubts_wheels(const agv_motion_checks_t *checks, const agv_vehicle_t *vehicle) {

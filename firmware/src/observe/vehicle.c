@@ -89,5 +89,5 @@ bool agv_vehicle_may_move(const agv_vehicle_t *vehicle, uint32_t speed_mm_s) {
 }
 
 bool agv_vehicle_throttle_is_idle(const agv_vehicle_t *vehicle, const agv_config_t *config) {
-    return vehicle->throttle_known && (vehicle->throttle <= config->throttle_idle_counts);
+    return vehicle->throttle <= config->throttle_idle_counts;
 }

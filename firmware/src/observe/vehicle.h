@@ -75,7 +75,7 @@ bool agv_vehicle_wheel_turns(const agv_vehicle_t *vehicle, uint32_t speed_mm_s);
 /** Whether in the last 101h, fresh or not, a wheel turns at @p speed_mm_s or faster, or the VCU contradicts it. */
 bool agv_vehicle_may_move(const agv_vehicle_t *vehicle, uint32_t speed_mm_s);
 
-/** Whether the throttle status is idle; false if none was received, or the last 050h was not valid. */
+/** Whether the last valid 050h is at idle; true if none was received. */
 bool agv_vehicle_throttle_is_idle(const agv_vehicle_t *vehicle, const agv_config_t *config);
 
 #endif

@@ -132,11 +132,16 @@ static uint32_t vcu_facts(const agv_core_t *core) {
     return bit_if(off, AGV_FACT_AUTOPILOT_OFF) | bit_if(!agv_core_step_is_late(core), AGV_FACT_VCU_ALIVE);
 }
 
-/* If THROTTLE_STATUS_TIMEOUT is a trip, AGV_FACT_MESSAGES covers a silent 050h. If it only warns, this function checks it. */
+/*
+ * INIT waits only for a 050h that reports throttle. A reset also needs a 050h that is valid and not silent: if
+ * THROTTLE_STATUS_TIMEOUT is a trip, AGV_FACT_MESSAGES covers its silence; if it only warns, this function checks it.
+ */
 static bool throttle_is_idle(const agv_core_t *core) {
-    const bool unseen = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_THROTTLE_STATUS_TIMEOUT) &&
-                        !agv_config_is_trip(&core->config, AGV_FAULT_THROTTLE_STATUS_TIMEOUT);
-    return !unseen && agv_vehicle_throttle_is_idle(&core->vehicle, &core->config);
+    const bool unseen = !core->vehicle.throttle_known ||
+                        (agv_fault_monitor_is_active(&core->faults, AGV_FAULT_THROTTLE_STATUS_TIMEOUT) &&
+                         !agv_config_is_trip(&core->config, AGV_FAULT_THROTTLE_STATUS_TIMEOUT));
+    return ((core->machine.state == (uint8_t)AGV_STATE_INIT) || !unseen) &&
+           agv_vehicle_throttle_is_idle(&core->vehicle, &core->config);
 }
 
 /* The facts for INIT, TRIPPED and SAFE. */

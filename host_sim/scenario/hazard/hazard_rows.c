@@ -78,8 +78,12 @@ static bool is_steering_stuck(const hazard_t *hazard) {
            (abs(hazard_measured_ddeg(hazard) - told_ddeg) > limit_ddeg);
 }
 
+static bool is_at_idle(const hazard_t *hazard) {
+    return throttle_of(hazard) <= hazard->config->throttle_idle_counts;
+}
+
 static bool is_throttle_in_park(const hazard_t *hazard) {
-    return (gear_of(hazard) == AGV_GEAR_P) && (throttle_of(hazard) > hazard->config->throttle_idle_counts);
+    return (gear_of(hazard) == AGV_GEAR_P) && !is_at_idle(hazard);
 }
 
 static bool is_throttle_too_high(const hazard_t *hazard) {
@@ -89,12 +93,15 @@ static bool is_throttle_too_high(const hazard_t *hazard) {
            (hazard->t_ms - hazard->throttle_high_ms > FALL_MS);
 }
 
-static bool is_other_gear(const hazard_t *hazard) {
+static bool is_in_other_gear(const hazard_t *hazard) {
     const uint8_t gear = gear_of(hazard);
 
-    return hazard->is_commanded[AGV_MSG_GEAR_COMMAND] && (throttle_of(hazard) > hazard->config->throttle_idle_counts) &&
-           ((gear == AGV_GEAR_D) || (gear == AGV_GEAR_R)) &&
+    return hazard->is_commanded[AGV_MSG_GEAR_COMMAND] && ((gear == AGV_GEAR_D) || (gear == AGV_GEAR_R)) &&
            ((uint16_t)gear != hazard->commanded[AGV_MSG_GEAR_COMMAND]);
+}
+
+static bool is_driven_in_other_gear(const hazard_t *hazard) {
+    return is_in_other_gear(hazard) && !is_at_idle(hazard);
 }
 
 static bool is_off_ignored(const hazard_t *hazard) {
@@ -189,7 +196,7 @@ static const row_t ROWS[] = {
     {"more throttle than commanded", LEVEL, true, NONE, AGV_SETTING_throttle_deviation_ms, AGV_FAULT_THROTTLE_DEVIATION,
      NULL, 0, is_throttle_too_high},
     {"another gear than commanded", LEVEL, true, NONE, AGV_SETTING_gear_deviation_ms, AGV_FAULT_GEAR_DEVIATION, NULL, 0,
-     is_other_gear},
+     is_driven_in_other_gear},
     {"autopilot off is ignored", LEVEL, true, NONE, AGV_SETTING_autopilot_off_ms, AGV_FAULT_AUTOPILOT_OFF_IGNORED, NULL,
      0, is_off_ignored},
     {"no valid mode is reported", LEVEL, false, NONE, AGV_SETTING_mode_none_ms, AGV_FAULT_NONE, NULL, 0,
@@ -286,9 +293,14 @@ static bool is_in_grace(const hazard_t *hazard, const row_t *row) {
            (hazard->t_ms - mode->engaged_ms < hazard->config->engaged_grace_ms);
 }
 
-/** Without a gear, time neither adds to the conditions that it is a part of, nor takes away. */
-static bool lacks_gear(const hazard_t *hazard, const row_t *row) {
-    return ((row->holds == is_other_gear) || (row->holds == is_throttle_in_park)) && (gear_of(hazard) == 0);
+/**
+ * Time that neither adds to a condition nor takes away: without a gear, of the conditions that it is a part of; in another gear
+ * with the throttle at idle, of that gear.
+ */
+static bool shows_nothing(const hazard_t *hazard, const row_t *row) {
+    const bool is_of_gear = row->holds == is_driven_in_other_gear;
+    return ((is_of_gear || (row->holds == is_throttle_in_park)) && (gear_of(hazard) == 0)) ||
+           (is_of_gear && is_in_other_gear(hazard) && is_at_idle(hazard));
 }
 
 /** Time in which a condition holds adds up; time in which it does not takes away. */
@@ -300,7 +312,7 @@ static void add_up(hazard_t *hazard, unsigned r) {
 
     if (is_manual) {
         *budget_ms -= long_manual ? STEP_MS * MANUAL_WEIGHT : STEP_MS;
-    } else if (lacks_gear(hazard, row)) {
+    } else if (shows_nothing(hazard, row)) {
         /* as it was */
     } else {
         *budget_ms += holds(hazard, r) ? STEP_MS : -STEP_MS;

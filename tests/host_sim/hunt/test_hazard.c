@@ -596,6 +596,11 @@ static const struct {
      "  - {at_ms: 2000, vcu: ignore, message: gear_command}\n"
      "  - {at_ms: 2000, vcu: set, field: gear, value: 03h, frames: 2, every_frames: 3}\n"
      "  - {at_ms: 2100, ai: set, field: gear, value: 02h}\n"},
+    /* R is commanded, 0A3h shows D; every second 050h shows idle, which says nothing about the gear */
+    {HAZARD_FALSE_NODE, "another gear than commanded", &MUTE, &GOOD,
+     "  - {at_ms: 2900, vcu: ignore, message: gear_command}\n"
+     "  - {at_ms: 3000, ai: set, field: gear, value: 02h}\n"
+     "  - {at_ms: 3000, vcu: set, field: throttle, value: 00h, frames: 1, every_frames: 2}\n"},
     /* 200 gaps of 1 ms; after a restart nobody knows of them */
     {HAZARD_FALSE_NODE, "commands come too fast", &IGNORES_FLOOD, NULL, FLOOD},
     {HAZARD_NONE, NULL, NULL, &IGNORES_FLOOD, FLOOD "  - {at_ms: 3250, supervisor: restart, cause: software}\n"},

@@ -95,6 +95,7 @@ static const obstacle_t OBSTACLES[] = {
     {{"the VCU reports a speed", .by = spoil_speed}, AGV_MISSING_STANDSTILL},
     {{"engaged", .by = spoil_mode}, AGV_MISSING_MANUAL},
     {{"neither mode", M_VEHICLE, BYTE, 7, .value = MODE_NEITHER}, AGV_MISSING_MANUAL},
+    {{"throttle", M_THROTTLE_STATUS, BYTE, 1, .value = 3}, AGV_MISSING_THROTTLE},
     {{"VCU alarm", M_VEHICLE, BYTE, 5, .value = ALARM_REMOTE_SIGNAL}, AGV_MISSING_TRIP_CAUSE},
     {{"EPS fault", M_EPS_STATUS, BYTE, 8, .value = 0x40}, AGV_MISSING_TRIP_CAUSE},
     {{"bus-off", .by = bus_off}, AGV_MISSING_TRIP_CAUSE},
@@ -154,7 +155,7 @@ void test_conditions_that_do_not_keep_init(void) {
     f.traffic[AGV_MSG_STEERING_POSITION].muted = true; /* 267h only warns */
     fixture_mute_ai(&f, true);
     fixture_gear(&f, GEAR_D);
-    fixture_throttle(&f, 100);
+    fixture_throttle(&f, 2);     /* at idle */
     fixture_wheels(&f, 49, -49); /* these values count as standstill */
     fixture_speed(&f, 180);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0x01; /* level 2 alarm */

@@ -33,7 +33,7 @@ static bool has_cause(uint8_t fault);
     assigns \nothing;
     ensures \result == 0 ==>
                 (facts & 0x02) != 0 && (facts & 0x04) != 0 && (facts & 0x20) != 0 && (facts & 0x80) != 0 &&
-                (facts & 0x400) != 0 && (facts & 0x10000) != 0 && none(faults->cause) && none(faults->ai_cause);
+                (facts & 0x100) != 0 && (facts & 0x400) != 0 && (facts & 0x10000) != 0 && none(faults->cause) && none(faults->ai_cause);
 */
 static uint32_t missing_in_init(const agv_fault_summary_t *faults, uint32_t facts);
 

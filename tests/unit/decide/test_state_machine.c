@@ -157,10 +157,10 @@ void test_init_is_left_after_500_ms_without_a_break(void) {
     TEST_ASSERT_EQUAL_HEX8(AGV_LATCH_OPEN, machine.latched);
 }
 
-/* Every missing condition keeps INIT. Speeds of a standstill are enough; 050h need not be at idle. */
+/* Every missing condition keeps INIT. Speeds of a standstill are enough. */
 void test_conditions_that_keep_init(void) {
     static const uint16_t needed[] = {AGV_MISSING_VCU_HEARTBEAT, AGV_MISSING_EPS_HEARTBEAT, AGV_MISSING_MANUAL,
-                                      AGV_MISSING_MESSAGES};
+                                      AGV_MISSING_MESSAGES, AGV_MISSING_THROTTLE};
     for (unsigned i = 0; i < sizeof needed / sizeof needed[0]; i++) {
         setUp();
         facts.missing = needed[i];
@@ -180,7 +180,7 @@ void test_conditions_that_keep_init(void) {
     facts.engaged = true; /* of 363h, some report manual and others both modes */
     expect_state_after(1000, AGV_STATE_INIT);
     setUp();
-    facts.missing = AGV_MISSING_STANDSTILL | AGV_MISSING_THROTTLE;
+    facts.missing = AGV_MISSING_STANDSTILL;
     facts.wheels_turn = true;
     expect_state_after(1000, AGV_STATE_STANDBY);
 }
@@ -195,7 +195,8 @@ void test_after_10_s_the_start_reports_once_what_is_missing(void) {
     step(1);
     TEST_ASSERT_TRUE(has_done(AGV_ACTION_STARTUP_LATE));
     TEST_ASSERT_FALSE(has_done(AGV_ACTION_TRIP));
-    TEST_ASSERT_EQUAL_HEX16(AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_STANDSTILL | AGV_MISSING_TRIP_CAUSE, missing());
+    TEST_ASSERT_EQUAL_HEX16(
+        AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_STANDSTILL | AGV_MISSING_TRIP_CAUSE | AGV_MISSING_THROTTLE, missing());
     step(1);
     TEST_ASSERT_FALSE(has_done(AGV_ACTION_STARTUP_LATE));
 }

@@ -48,6 +48,11 @@ static void expect_after(uint32_t ms, unsigned fault) {
     TEST_ASSERT_TRUE(is_active(fault));
 }
 
+static void run_with_throttle(uint32_t ms, uint8_t counts) {
+    vehicle.throttle = counts;
+    run(ms);
+}
+
 static void expect_never(unsigned fault) {
     run(5000);
     TEST_ASSERT_FALSE(is_active(fault));
@@ -739,12 +744,36 @@ void test_idle_or_no_command_is_no_gear_deviation(void) {
     expect_never(GEAR);
     vehicle.throttle = 3;
     expect_after(1000, GEAR);
-    vehicle.throttle = 2;
+    vehicle.throttle = 2; /* idle does not say that the gear is right: the budget stays as it is */
+    begin();
+    run(5000);
+    TEST_ASSERT_TRUE(is_active(GEAR));
+    vehicle.gear = AGV_GEAR_D;
     begin();
     run(1999);
     TEST_ASSERT_TRUE(is_active(GEAR)); /* until the budget is empty */
     run(1);
     TEST_ASSERT_FALSE(is_active(GEAR));
+}
+
+/* 100 ms above idle in each second: 900 ms after 9 s, and the last 100 ms in the tenth. */
+/* Shows: SUP-11, GEAR_DEVIATION */
+void test_a_throttle_in_pulses_does_not_hide_another_gear(void) {
+    vehicle.gear = AGV_GEAR_R;
+    vehicle.throttle = 2;
+    agv_commands_take(&commands, AGV_MSG_GEAR_COMMAND, (const uint8_t[8]){AGV_GEAR_D});
+    command_throttle(250);
+    begin();
+    for (unsigned second = 0; second < 9; second++) {
+        run_with_throttle(900, 2);
+        run_with_throttle(100, 3);
+        TEST_ASSERT_FALSE(is_active(GEAR));
+    }
+    run_with_throttle(900, 2);
+    run_with_throttle(99, 3);
+    TEST_ASSERT_FALSE(is_active(GEAR));
+    run_with_throttle(2, 3);
+    TEST_ASSERT_TRUE(is_active(GEAR));
 }
 
 /* ---- Autopilot off (SUP-11) ---- */

@@ -69,19 +69,20 @@ void test_a_throttle_that_is_invalid_is_not_taken(void) {
     TEST_ASSERT_EQUAL_UINT8(10, vehicle.throttle);
 }
 
-/* At most 2 counts; unknown or invalid is not idle. */
+/* At most 2 counts. An invalid 050h leaves the last valid one, but the throttle is no longer known. */
 /* Shows: FSM-3 */
-void test_idle_is_known_and_at_most_two_counts(void) {
-    TEST_ASSERT_FALSE(agv_vehicle_throttle_is_idle(&vehicle, &config));
-    throttle(0, false);
-    TEST_ASSERT_FALSE(agv_vehicle_throttle_is_idle(&vehicle, &config));
+void test_idle_is_at_most_two_counts_of_the_last_valid_050h(void) {
+    TEST_ASSERT_FALSE(vehicle.throttle_known);
+    TEST_ASSERT_TRUE(agv_vehicle_throttle_is_idle(&vehicle, &config));
     throttle(2, true);
+    TEST_ASSERT_TRUE(vehicle.throttle_known);
     TEST_ASSERT_TRUE(agv_vehicle_throttle_is_idle(&vehicle, &config));
     throttle(251, false);
-    TEST_ASSERT_FALSE(agv_vehicle_throttle_is_idle(&vehicle, &config));
-    throttle(2, true);
+    TEST_ASSERT_FALSE(vehicle.throttle_known);
     TEST_ASSERT_TRUE(agv_vehicle_throttle_is_idle(&vehicle, &config));
     throttle(3, true);
+    TEST_ASSERT_FALSE(agv_vehicle_throttle_is_idle(&vehicle, &config));
+    throttle(0, false);
     TEST_ASSERT_FALSE(agv_vehicle_throttle_is_idle(&vehicle, &config));
     config.throttle_idle_counts = 25;
     TEST_ASSERT_TRUE(agv_vehicle_throttle_is_idle(&vehicle, &config));

@@ -101,6 +101,15 @@ class FiveLogs(Case):
         self.assertEqual(self.why(log)["not_supervised"], ["standstill", "manual"])
         self.assertEqual(self.why(log)["supervised_ms"], 0)
 
+    def test_a_throttle_that_hangs_at_standstill(self):
+        def hangs(frame):
+            if frame.name == "throttle_status":
+                frame.data = bytes([0x0A]) + frame.data[1:]
+            return frame
+        log = traffic.log(traffic.frames(3000, edit=hangs))
+        self.assertEqual(self.text(log)[0], "NOT SUPERVISED: never left INIT, missing: throttle (050h reports 10 counts)")
+        self.assertEqual(self.why(log)["not_supervised"], ["throttle"])
+
     def test_what_flickers_at_the_end_is_missing_too(self):
         def every_70_ms(frame):
             return frame if frame.name != "vehicle_status" or frame.t_ms % 70 < 10 else None
