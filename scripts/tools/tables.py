@@ -49,7 +49,7 @@ def fault(event, name, fault_class, led, flags):
 
 def faults(root):
     """Highest rank first."""
-    return read(root / HEADERS / "fault_table.def", [(begin, FAULT, fault) for begin in ("AGV_FAULT(", "AGV_FAULT_EVENT(")])
+    return read(root / HEADERS / "fault_table.def", [(begin, FAULT, fault) for begin in ("AGV_FAULT(", "AGV_FAULT_TRANSIENT(")])
 
 
 def settings(root):

@@ -11,10 +11,10 @@
 /** A fault. The value is its rank; 0 is the highest. */
 typedef enum {
 #define AGV_FAULT(name, class, led, flags) AGV_FAULT_##name,
-#define AGV_FAULT_EVENT(name, class, led, flags) AGV_FAULT_##name,
+#define AGV_FAULT_TRANSIENT(name, class, led, flags) AGV_FAULT_##name,
 #include "agv/fault_table.def"
 #undef AGV_FAULT
-#undef AGV_FAULT_EVENT
+#undef AGV_FAULT_TRANSIENT
     AGV_FAULT_COUNT,
     AGV_FAULT_NONE = AGV_FAULT_COUNT
 } agv_fault_t;

@@ -8,10 +8,10 @@ static const struct {
     uint8_t timer;
 } events[] = {
 #define AGV_FAULT(name, class, led, flags)
-#define AGV_FAULT_EVENT(name, class, led, flags) {AGV_FAULT_##name, AGV_TIMER_EVENT_##name},
+#define AGV_FAULT_TRANSIENT(name, class, led, flags) {AGV_FAULT_##name, AGV_TIMER_EVENT_##name},
 #include "agv/fault_table.def"
 #undef AGV_FAULT
-#undef AGV_FAULT_EVENT
+#undef AGV_FAULT_TRANSIENT
 };
 
 enum { EVENTS = sizeof events / sizeof events[0] };

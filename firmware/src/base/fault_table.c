@@ -4,7 +4,7 @@
  */
 #include "agv/faults.h"
 
-#define AGV_FAULT_EVENT AGV_FAULT
+#define AGV_FAULT_TRANSIENT AGV_FAULT
 
 enum {
     NONE = 0,

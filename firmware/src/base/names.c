@@ -5,7 +5,7 @@
 
 #include "hal/reset.h"
 
-#define AGV_FAULT_EVENT AGV_FAULT
+#define AGV_FAULT_TRANSIENT AGV_FAULT
 #define AGV_COMMAND AGV_STATUS
 
 static const char *const fault_names[AGV_FAULT_COUNT] = {

@@ -14,11 +14,11 @@ static const struct {
 #include "base/timer_table.def"
 #undef AGV_TIMER
 #define AGV_FAULT(name, class, led, flags)
-#define AGV_FAULT_EVENT(name, class, led, flags)                                                                       \
+#define AGV_FAULT_TRANSIENT(name, class, led, flags)                                                                   \
     [AGV_TIMER_EVENT_##name] = {.setting = AGV_SETTING_event_hold_ms, .more_ms = DURATION},
 #include "agv/fault_table.def"
 #undef AGV_FAULT
-#undef AGV_FAULT_EVENT
+#undef AGV_FAULT_TRANSIENT
 #define AGV_COMMAND AGV_STATUS
 #define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter)                                        \
     [AGV_TIMER_MESSAGE_##NAME] = {.setting = AGV_SETTING_##deadline, .more_ms = DEADLINE},

@@ -18,10 +18,10 @@ typedef enum {
 #include "base/timer_table.def"
 #undef AGV_TIMER
 #define AGV_FAULT(name, class, led, flags)
-#define AGV_FAULT_EVENT(name, class, led, flags) AGV_TIMER_EVENT_##name,
+#define AGV_FAULT_TRANSIENT(name, class, led, flags) AGV_TIMER_EVENT_##name,
 #include "agv/fault_table.def"
 #undef AGV_FAULT
-#undef AGV_FAULT_EVENT
+#undef AGV_FAULT_TRANSIENT
 #define AGV_COMMAND(NAME, name, heading, table, cycle, deadline, fault, counter) AGV_TIMER_MESSAGE_##NAME,
 #define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter) AGV_TIMER_MESSAGE_##NAME,
 #include "agv/message_table.def"
