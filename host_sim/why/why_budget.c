@@ -32,14 +32,10 @@ static bool is_above_idle(const why_t *why) {
     return why->facts.throttle > why->config.throttle_idle_counts;
 }
 
-static bool gear_is_another(const why_t *why) {
+static bool is_driven_in_another_gear(const why_t *why) {
     const uint32_t gear = why->facts.gear;
     return why->facts.command_known[AGV_MSG_GEAR_COMMAND] && ((gear == AGV_GEAR_D) || (gear == AGV_GEAR_R)) &&
-           (gear != why->facts.gear_command);
-}
-
-static bool is_driven_in_another_gear(const why_t *why) {
-    return gear_is_another(why) && is_above_idle(why);
+           (gear != why->facts.gear_command) && is_above_idle(why);
 }
 
 static bool off_is_ignored(const why_t *why) {
@@ -144,9 +140,15 @@ static uint64_t budget_counts_from(const why_t *why, const row_t *row) {
     return row->judged ? why_judged_us(why) : 0;
 }
 
-/** Another gear with the throttle at idle neither adds nor takes. */
+/** D or R is commanded, and not reported. */
+static bool gear_is_awaited(const why_t *why) {
+    return (why->facts.gear_command <= AGV_GEAR_R) && (why->facts.gear != why->facts.gear_command);
+}
+
+/** At idle, neither the throttle nor an awaited gear takes. */
 static bool shows_nothing(const why_t *why, const row_t *row) {
-    return (row->is_bad == is_driven_in_another_gear) && gear_is_another(why) && !is_above_idle(why);
+    return !is_above_idle(why) &&
+           ((row->is_bad == throttle_is_above) || ((row->is_bad == is_driven_in_another_gear) && gear_is_awaited(why)));
 }
 
 /** Count the time since the last call: a bad microsecond adds 2, a good one takes 1. */

@@ -14,7 +14,7 @@ Setting = collections.namedtuple("Setting", "name default lowest highest unit we
 Choice = collections.namedtuple("Choice", "name words weakens scope meaning")
 Message = collections.namedtuple("Message", "name heading table")
 
-FAULT = re.compile(r"^AGV_FAULT(_EVENT)?\((\w+), (TRIP|WARN), (\d+), ([A-Z_]+(?: \| [A-Z_]+)*)\)$")
+FAULT = re.compile(r"^AGV_FAULT(_TRANSIENT)?\((\w+), (TRIP|WARN), (\d+), ([A-Z_]+(?: \| [A-Z_]+)*)\)$")
 SETTING = re.compile(rf'^AGV_SETTING\((\w+), {NUMBER}, {NUMBER}, {NUMBER}, "([^"]*)", (ABOVE|BELOW|ZERO|NEVER), (GATEWAY|ANY), '
                      r'"([^"]*)"\)$')
 CHOICE = re.compile(r'^AGV_CHOICE\((\w+), "(\w+(?:\|\w+)+)", \d+, (CHOSEN|NEVER), (GATEWAY|ANY), "([^"]*)"\)$')
@@ -49,7 +49,8 @@ def fault(event, name, fault_class, led, flags):
 
 def faults(root):
     """Highest rank first."""
-    return read(root / HEADERS / "fault_table.def", [(begin, FAULT, fault) for begin in ("AGV_FAULT(", "AGV_FAULT_TRANSIENT(")])
+    begins = ("AGV_FAULT(", "AGV_FAULT_TRANSIENT(")
+    return read(root / HEADERS / "fault_table.def", [(begin, FAULT, fault) for begin in begins])
 
 
 def settings(root):

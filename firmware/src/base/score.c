@@ -37,3 +37,12 @@ void agv_budget_add(agv_budget_t *budget, bool condition, uint32_t elapsed_ms, u
     budget->value_ms = (uint16_t)value_ms;
     budget->present = (value_ms == limit_ms) || (budget->present && (value_ms != 0u));
 }
+
+void agv_budget_gather(agv_budget_t *budget, bool condition, uint32_t elapsed_ms, uint32_t limit_ms) {
+    const agv_budget_t before = *budget;
+    agv_budget_add(budget, condition, elapsed_ms, limit_ms);
+    if (budget->value_ms < before.value_ms) {
+        budget->value_ms = before.value_ms;
+        budget->present = before.present;
+    }
+}

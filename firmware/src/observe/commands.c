@@ -16,11 +16,11 @@ void agv_commands_take(agv_commands_t *commands, uint32_t command, const uint8_t
 }
 
 void agv_commands_forget(agv_commands_t *commands) {
-    commands->known = 0u;
+    *commands = (agv_commands_t){0};
 }
 
 void agv_commands_forget_gear(agv_commands_t *commands) {
-    commands->known &= (uint8_t)~agv_message_bit(AGV_MSG_GEAR_COMMAND);
+    commands->gear = 0u;
 }
 
 bool agv_commands_has(const agv_commands_t *commands, uint32_t command) {

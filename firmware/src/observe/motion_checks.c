@@ -116,8 +116,12 @@ static bool throttle_is_above(const agv_motion_facts_t *facts) {
 
 static bool gear_is_another(const agv_motion_facts_t *facts) {
     const uint32_t gear = facts->vehicle->gear;
-    return agv_commands_has(facts->commands, AGV_MSG_GEAR_COMMAND) &&
-           ((gear == (uint32_t)AGV_GEAR_D) || (gear == (uint32_t)AGV_GEAR_R)) && (gear != facts->commands->gear);
+    return (facts->commands->gear != 0u) && (gear <= (uint32_t)AGV_GEAR_R) && (gear != facts->commands->gear);
+}
+
+/* D or R is commanded, and not reported: at idle this does not show that the gear is right. */
+static bool gear_is_awaited(const agv_motion_facts_t *facts) {
+    return (facts->commands->gear <= (uint8_t)AGV_GEAR_R) && (facts->vehicle->gear != facts->commands->gear);
 }
 
 static bool speeds_are_known(const agv_vehicle_t *vehicle) {
@@ -157,18 +161,18 @@ void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_
     }
     spend(&budgets[AGV_BUDGET_STEERING], &checks->steering, steering_is_off(facts), elapsed_ms,
           config->steering_deviation_ms);
-    spend(&budgets[AGV_BUDGET_THROTTLE], &checks->throttle, throttle_is_above(facts), elapsed_ms,
-          config->throttle_deviation_ms);
-    agv_budget_add(&budgets[AGV_BUDGET_AUTOPILOT_OFF],
-                   agv_commands_has(facts->commands, AGV_MSG_TURN_SIGNAL_COMMAND) && facts->commands->autopilot_off,
-                   elapsed_ms, config->autopilot_off_ms);
+    const bool idle = agv_vehicle_throttle_is_idle(facts->vehicle, config);
+    const bool above = throttle_is_above(facts);
+    spend(&budgets[AGV_BUDGET_THROTTLE], &checks->throttle, above, (above || !idle) ? elapsed_ms : 0u,
+          config->throttle_deviation_ms); /* at idle nothing shows that the throttle obeys */
+    agv_budget_add(&budgets[AGV_BUDGET_AUTOPILOT_OFF], facts->commands->autopilot_off, elapsed_ms,
+                   config->autopilot_off_ms);
     if (facts->vehicle->gear == 0u) {
         return; /* an invalid 0A3h hides nothing: the budgets of the gear do not change */
     }
-    const bool another = gear_is_another(facts);
-    const bool idle = agv_vehicle_throttle_is_idle(facts->vehicle, config);
-    if (!another || !idle) { /* another gear with the throttle at idle hides nothing */
-        agv_budget_add(&budgets[AGV_BUDGET_GEAR], another, elapsed_ms, config->gear_deviation_ms);
+    if (!idle || !gear_is_awaited(facts)) {
+        agv_budget_add(&budgets[AGV_BUDGET_GEAR], !idle && gear_is_another(facts), elapsed_ms,
+                       config->gear_deviation_ms);
     }
     if (!facts->gear_fresh) {
         return; /* a slow 0A3h hides nothing */

@@ -48,13 +48,12 @@ agv_motion_facts_t agv_core_motion_facts(const agv_core_t *core) {
 }
 
 agv_gateway_facts_t agv_core_gateway_facts(const agv_core_t *core) {
-    const bool gear_sent =
-        (core->machine.state == (uint8_t)AGV_STATE_ACTIVE) && agv_commands_has(&core->commands, AGV_MSG_GEAR_COMMAND);
     return (agv_gateway_facts_t){.config = &core->config,
                                  .vehicle = &core->vehicle,
                                  .state = (agv_state_t)core->machine.state,
                                  .now_ms = core->timers.now_ms,
-                                 .gear_sent = gear_sent ? core->commands.gear : 0u,
+                                 .gear_sent =
+                                     (core->machine.state == (uint8_t)AGV_STATE_ACTIVE) ? core->commands.gear : 0u,
                                  .gear_fresh = agv_liveness_fresh(&core->liveness, &core->timers, AGV_MSG_GEAR_STATUS),
                                  .angle_fresh = agv_timer_is_within(&core->timers, AGV_TIMER_ANGLE),
                                  .autopilot = agv_mode_reports_autopilot(&core->mode),

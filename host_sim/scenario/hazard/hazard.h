@@ -101,6 +101,7 @@ typedef struct {
     bool tripped;      /**< they came since */
     bool parks;        /**< the first 168h P */
     bool parked;       /**< the same, since a trip or a restart */
+    bool stood;        /**< 101h has reported standstill since */
     uint64_t first_ms; /**< of the first since then */
     uint64_t
         since_ms; /**< the trip was no earlier: the transmitter may have taken nothing before, or the supervisor hung */
@@ -213,7 +214,7 @@ typedef struct {
     uint32_t passed[HAZARD_FLOOD_SLOTS];
     uint32_t passed_at;
     uint64_t turned_ms;     /**< 101h reported no standstill at that time */
-    uint32_t rolled_halves; /**< half ms in which the vehicle rolls, although it was tripped */
+    uint32_t rolled_ms;     /**< for how long the vehicle has rolled, although it was tripped */
     int32_t still_at_ddeg;  /**< 067h: the last angle */
     int32_t moved_ddeg;     /**< 067h: way to and fro, since */
     int32_t really_at_ddeg; /**< the same of the real steering */

@@ -93,15 +93,20 @@ static bool is_throttle_too_high(const hazard_t *hazard) {
            (hazard->t_ms - hazard->throttle_high_ms > FALL_MS);
 }
 
-static bool is_in_other_gear(const hazard_t *hazard) {
+static bool is_driven_in_other_gear(const hazard_t *hazard) {
     const uint8_t gear = gear_of(hazard);
 
-    return hazard->is_commanded[AGV_MSG_GEAR_COMMAND] && ((gear == AGV_GEAR_D) || (gear == AGV_GEAR_R)) &&
+    return hazard->is_commanded[AGV_MSG_GEAR_COMMAND] && !is_at_idle(hazard) &&
+           ((gear == AGV_GEAR_D) || (gear == AGV_GEAR_R)) &&
            ((uint16_t)gear != hazard->commanded[AGV_MSG_GEAR_COMMAND]);
 }
 
-static bool is_driven_in_other_gear(const hazard_t *hazard) {
-    return is_in_other_gear(hazard) && !is_at_idle(hazard);
+/** D or R is commanded and not reported, and the throttle is at idle. */
+static bool is_gear_awaited(const hazard_t *hazard) {
+    const uint16_t commanded = hazard->commanded[AGV_MSG_GEAR_COMMAND];
+
+    return hazard->is_commanded[AGV_MSG_GEAR_COMMAND] && is_at_idle(hazard) &&
+           ((commanded == AGV_GEAR_D) || (commanded == AGV_GEAR_R)) && ((uint16_t)gear_of(hazard) != commanded);
 }
 
 static bool is_off_ignored(const hazard_t *hazard) {
@@ -294,13 +299,13 @@ static bool is_in_grace(const hazard_t *hazard, const row_t *row) {
 }
 
 /**
- * Time that neither adds to a condition nor takes away: without a gear, of the conditions that it is a part of; in another gear
- * with the throttle at idle, of that gear.
+ * Time that neither adds to a condition nor takes away: without a gear, of the conditions that it is a part of; at idle
+ * with a gear that is not the commanded D or R, of that gear.
  */
 static bool shows_nothing(const hazard_t *hazard, const row_t *row) {
     const bool is_of_gear = row->holds == is_driven_in_other_gear;
     return ((is_of_gear || (row->holds == is_throttle_in_park)) && (gear_of(hazard) == 0)) ||
-           (is_of_gear && is_in_other_gear(hazard) && is_at_idle(hazard));
+           (is_of_gear && is_gear_awaited(hazard));
 }
 
 /** Time in which a condition holds adds up; time in which it does not takes away. */

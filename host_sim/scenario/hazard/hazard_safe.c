@@ -23,6 +23,7 @@ static void begin_trip(hazard_t *hazard) {
     trip->tripped = true;
     trip->parks = false;
     trip->parked = false;
+    trip->stood = false;
     trip->first_ms = hazard->t_ms;
     trip->since_ms = trip->free_ms;
     forget_press(hazard, &trip->button);
@@ -165,35 +166,38 @@ static bool is_silent_after_standing(const hazard_t *hazard) {
            (hazard->stood_ms >= hazard->trip.first_ms);
 }
 
-/** 101h has reported standstill for standstill_ms without a break. */
-static bool has_stood(hazard_t *hazard) {
+/** For how long 101h has reported standstill without a break. */
+static uint64_t stands_for_ms(hazard_t *hazard) {
     hazard->turned_ms = hazard_is_said_to_stand(hazard) ? hazard->turned_ms : hazard->t_ms;
-    return hazard->t_ms - hazard->turned_ms >= hazard->config->standstill_ms;
+    return hazard->t_ms - hazard->turned_ms;
 }
 
 /**
- * The time in which the vehicle rolls, and 101h shows it: a ms adds 2 halves, and a ms in which it does not takes one away.
- * A silent 101h changes nothing, a standstill begins it anew.
+ * The time in which the vehicle rolls, and 101h shows it. The first standstill after the trip begins it anew, and then
+ * a standstill of hold_standstill_ms. A shorter one, and a silent 101h, change nothing.
  */
 static void follow_rolling(hazard_t *hazard) {
-    const uint32_t most = 2 * (uint32_t)MARGIN_MS;
+    hazard_trip_t *trip = &hazard->trip;
+    const uint64_t stands_ms = stands_for_ms(hazard);
+    const bool has_stood = stands_ms >= hazard->config->standstill_ms;
 
-    if (has_stood(hazard) || !hazard->closed || !hazard->trip.tripped) {
-        hazard->rolled_halves = 0;
-    } else if ((hazard_speed_mm_s(hazard) < MOVING_MM_S) || hazard_is_said_to_stand(hazard)) {
-        hazard->rolled_halves -= (hazard->rolled_halves != 0) ? 1 : 0;
-    } else if (is_silent_after_standing(hazard)) {
-        /* as it was */
+    if (!hazard->closed || !trip->tripped || (has_stood && !trip->stood) ||
+        (stands_ms >= hazard->config->hold_standstill_ms)) {
+        hazard->rolled_ms = 0;
+    } else if ((hazard_speed_mm_s(hazard) >= MOVING_MM_S) && !hazard_is_said_to_stand(hazard) &&
+               !is_silent_after_standing(hazard)) {
+        hazard->rolled_ms += (hazard->rolled_ms < MARGIN_MS) ? 1 : 0;
     } else {
-        hazard->rolled_halves += (hazard->rolled_halves < most) ? 2 : 0;
+        /* as it was */
     }
+    trip->stood = trip->stood || has_stood;
 }
 
 /** The safe commands are sent, and the vehicle moves (H1). */
 static void check_stopping(hazard_t *hazard) {
     follow_rolling(hazard);
     if ((hazard->t_ms - hazard->trip.first_ms > (uint64_t)hazard->config->stop_timeout_ms + MARGIN_MS) &&
-        (hazard->rolled_halves >= 2 * (uint32_t)MARGIN_MS)) {
+        (hazard->rolled_ms >= MARGIN_MS)) {
         hazard_found(hazard, HAZARD_NOT_STOPPING, "the vehicle does not obey the safe commands");
     }
 }

@@ -234,6 +234,8 @@ static const stub_t MUTE = {0};
 static const stub_t PASSING = {.gateway = true, .passes = 1};
 
 static const stub_t ROLLS = {.rolls = true, .safe_ms = TRIP_MS};
+static const stub_t PARKED = {.safe_ms = TRIP_MS};
+static const stub_t PARKED_AND_OPENS = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 5000};
 static const stub_t ROLLS_AND_OPENS = {.rolls = true, .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 5000};
 static const stub_t STAYS = {.safe_ms = TRIP_MS};
 static const stub_t FORGETS = {.gateway = true, .passes = 1, .only_engaged = true};
@@ -335,6 +337,9 @@ static const stub_t PARKS = {.safe_ms = TRIP_MS, .parks_ms = TRIP_MS + 50, .sett
     "  - {at_ms: 4000, vcu: set_bytes, message: vehicle_status, bytes: \".. .. .. .. .. .. 40 ..\", frames: " frames   \
     "}\n"                                                                                                              \
     "  - {at_ms: 5500, vcu: set_bytes, message: vehicle_status, bytes: \".. .. .. .. .. .. 40 ..\", frames: 1}\n"
+#define JERKS                                                                                                          \
+    "  - {at_ms: 1900, ai: stop}\n"                                                                                    \
+    "  - {at_ms: 3900, vcu: roll, speed_mm_s: 3000, again_every_ms: 1800}\n"
 #define AI_PARKS "  - {at_ms: 3000, ai: drive, gear: P, throttle_pct: 0}\n"
 
 /** Each: a supervisor that does nothing about it, and one that reacts; NULL: none. */
@@ -362,6 +367,11 @@ static const struct {
     {HAZARD_NONE, NULL, NULL, &ROLLS,
      "  - {at_ms: 2990, vcu: set, field: left_speed, value: 00000000h, frames: 50}\n"
      "  - {at_ms: 2990, vcu: set, field: right_speed, value: 00000000h, frames: 50}\n" WHEELS_SILENT},
+    /* it rolls for a second of each 1.8 s; the stops in between are shorter than hold_standstill_ms */
+    {HAZARD_NOT_STOPPING, NOT_OBEYED, &PARKED, &PARKED_AND_OPENS,
+     JERKS "  - {at_ms: 4900, vcu: hold, again_every_ms: 1800}\n"},
+    {HAZARD_NONE, NULL, NULL, &(const stub_t){.safe_ms = TRIP_MS, .setting = "hold_standstill_ms: 500\n"},
+     JERKS "  - {at_ms: 4900, vcu: hold, again_every_ms: 1800}\n"},
     /* one that becomes slower has to stop in time, too; one 101h in six that reads 0 is no standstill */
     {HAZARD_NOT_STOPPING, NOT_OBEYED, &(const stub_t){.coasts = true, .safe_ms = TRIP_MS},
      &(const stub_t){.coasts = true, .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 5000}, ""},

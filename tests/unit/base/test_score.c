@@ -299,3 +299,23 @@ void test_several_ms_at_once_are_the_same_as_one_by_one(void) {
     TEST_ASSERT_EQUAL_UINT16(0, steps.value_ms);
     TEST_ASSERT_FALSE(steps.present);
 }
+
+/* Gathered time adds as in a budget, with the first ms seen as 0, and the last one after the condition has ended. */
+/* Shows: FSM-12 */
+void test_time_without_the_condition_takes_nothing_from_a_gathered_budget(void) {
+    for (unsigned pulse = 0; pulse < 4; pulse++) {
+        for (unsigned i = 0; i < 50; i++) {
+            agv_budget_gather(&budget, true, 1, 200);
+        }
+        TEST_ASSERT_EQUAL_UINT16(50 * pulse + 49, budget.value_ms);
+        TEST_ASSERT_FALSE(budget.present);
+        for (unsigned i = 0; i < 1000; i++) {
+            agv_budget_gather(&budget, false, 1, 200);
+        }
+        TEST_ASSERT_EQUAL_UINT16(50 * (pulse + 1), budget.value_ms);
+    }
+    TEST_ASSERT_TRUE(budget.present);
+    agv_budget_gather(&budget, false, 5000, 200);
+    TEST_ASSERT_EQUAL_UINT16(200, budget.value_ms);
+    TEST_ASSERT_TRUE(budget.present);
+}

@@ -159,20 +159,43 @@ void test_slow_wheels_and_short_ones_do_not_move_the_vehicle(void) {
     expect_faults_after(10000, false, false);
     for (unsigned i = 0; i < 20; i++) {
         wheels_for(199, 5000, 5000);
-        wheels_for(398, 99, 99);
+        wheels_for(5100, 0, 0); /* standing for 5 s, from 100 ms on, begins the sum anew */
     }
     expect(false, false);
 }
 
-/* 10 ms in 190 read slow: 180 ms are spent, and 5 are given back. */
+/* Slow wheels take nothing from the sum, nor does a standstill of less than 5 s: 180 ms, 1 ms to the first slow reading, 19 ms. */
 /* Shows: FSM-12, MOVING_WHILE_SAFE */
-void test_a_slow_reading_now_and_then_hides_no_motion(void) {
+TEST_CASE(10, 0)
+TEST_CASE(10000, 99)
+TEST_CASE(5098, 0)
+void test_motion_in_jerks_adds_up(unsigned slow_ms, int slow_mm_s) {
     trip_and_stop();
-    wheels_for(180, 5000, 5000);
-    wheels_for(10, 0, 0);
     wheels(5000, 5000);
     begin();
-    expect_after(25, false, true);
+    run(180);
+    wheels_for(slow_ms, slow_mm_s, slow_mm_s);
+    wheels(5000, 5000);
+    begin();
+    expect_after(19, false, true);
+    wheels_for(5099, 0, 0);
+    expect(false, false);
+    wheels(60, 0); /* the sum is still full, and the wheels do not stand */
+    expect_after(1, false, true);
+}
+
+/* The 5 s are a setting. */
+/* Shows: FSM-12, MOVING_WHILE_SAFE */
+void test_how_long_a_standstill_ends_the_sum_is_a_setting(void) {
+    config.hold_standstill_ms = 1000;
+    trip_and_stop();
+    wheels_for(199, 5000, 5000);
+    wheels_for(1100, 0, 0);
+    wheels_for(199, 5000, 5000);
+    expect(false, false);
+    wheels_for(1098, 0, 0);
+    wheels(5000, 5000);
+    expect_after(2, false, true);
 }
 
 /* The way to the stop is no motion after it. */

@@ -635,7 +635,27 @@ void test_one_good_throttle_in_many_is_no_drop(void) {
         run(10);
     }
     throttle(250);
-    expect_after(35, THROTTLE);
+    expect_after(30, THROTTLE);
+}
+
+/* Full throttle for 300 ms in each second, against 0. The drop of the first pulse clears the budget, the next one does not. */
+/* Shows: SUP-11, THROTTLE_DEVIATION */
+void test_throttle_in_pulses_adds_up(void) {
+    command_throttle(0);
+    throttle(250);
+    run(300);
+    throttle(0);
+    run(700);
+    throttle(250);
+    run(301);
+    throttle(0);
+    run(700);
+    TEST_ASSERT_FALSE(is_active(THROTTLE));
+    throttle(250);
+    run(199);
+    TEST_ASSERT_FALSE(is_active(THROTTLE));
+    run(1);
+    TEST_ASSERT_TRUE(is_active(THROTTLE));
 }
 
 /* A rise that follows the command is no step back: each ramp down is a drop again. */
@@ -744,15 +764,32 @@ void test_idle_or_no_command_is_no_gear_deviation(void) {
     expect_never(GEAR);
     vehicle.throttle = 3;
     expect_after(1000, GEAR);
-    vehicle.throttle = 2; /* idle does not say that the gear is right: the budget stays as it is */
-    begin();
-    run(5000);
-    TEST_ASSERT_TRUE(is_active(GEAR));
+    static const agv_gear_t others[] = {AGV_GEAR_R, AGV_GEAR_N, AGV_GEAR_P};
+    for (unsigned i = 0; i < sizeof others / sizeof others[0]; i++) {
+        vehicle.gear = (uint8_t)others[i];
+        vehicle.throttle = 2; /* idle does not say that the gear is right: the budget stays as it is */
+        begin();
+        run(5000);
+        TEST_ASSERT_TRUE(is_active(GEAR));
+    }
     vehicle.gear = AGV_GEAR_D;
     begin();
     run(1999);
     TEST_ASSERT_TRUE(is_active(GEAR)); /* until the budget is empty */
     run(1);
+    TEST_ASSERT_FALSE(is_active(GEAR));
+}
+
+/* The vehicle ignores N while the AI computer lets it roll at idle: that time is taken away, and N is not awaited. */
+/* Shows: SUP-11 */
+void test_an_ignored_n_at_idle_adds_nothing(void) {
+    vehicle.gear = AGV_GEAR_D;
+    command_throttle(250);
+    agv_commands_take(&commands, AGV_MSG_GEAR_COMMAND, (const uint8_t[8]){AGV_GEAR_N});
+    for (unsigned i = 0; i < 20; i++) {
+        run_with_throttle(300, 3);
+        run_with_throttle(600, 2);
+    }
     TEST_ASSERT_FALSE(is_active(GEAR));
 }
 
@@ -782,7 +819,8 @@ void test_a_throttle_in_pulses_does_not_hide_another_gear(void) {
 void test_autopilot_off_is_ignored_for_1_s(void) {
     static const uint8_t off[8] = {0, 0, 0, 0, 0x40};
     static const uint8_t on[8] = {0, 0, 0, 0, 0xBF};
-    commands.autopilot_off = true;
+    agv_commands_take(&commands, AGV_MSG_TURN_SIGNAL_COMMAND, off);
+    agv_commands_forget(&commands);
     expect_never(AGV_FAULT_AUTOPILOT_OFF_IGNORED); /* of the previous engagement */
     agv_commands_take(&commands, AGV_MSG_TURN_SIGNAL_COMMAND, on);
     expect_never(AGV_FAULT_AUTOPILOT_OFF_IGNORED);
