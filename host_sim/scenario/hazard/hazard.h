@@ -295,6 +295,7 @@ bool hazard_eps_perhaps_takes_none(const hazard_t *hazard);
 void hazard_speed_tick(hazard_t *hazard);
 bool hazard_is_said_to_stand(const hazard_t *hazard);
 bool hazard_is_at_standstill(const hazard_t *hazard);
+bool hazard_has_surely_stood(const hazard_t *hazard);
 void hazard_park_frame(hazard_t *hazard);
 void hazard_hold_anew(hazard_t *hazard);
 void hazard_hold_perhaps_anew(hazard_t *hazard);

@@ -173,8 +173,8 @@ static uint64_t stands_for_ms(hazard_t *hazard) {
 }
 
 /**
- * The time in which the vehicle rolls, and 101h shows it. The first standstill after the trip begins it anew, and then
- * a standstill of hold_standstill_ms. A shorter one, and a silent 101h, change nothing.
+ * The time in which the vehicle rolls, and 101h shows it. Each standstill begins it anew up to the first one after the trip that
+ * the supervisor must have seen; later only one of hold_standstill_ms does. A silent 101h changes nothing.
  */
 static void follow_rolling(hazard_t *hazard) {
     hazard_trip_t *trip = &hazard->trip;
@@ -190,7 +190,7 @@ static void follow_rolling(hazard_t *hazard) {
     } else {
         /* as it was */
     }
-    trip->stood = trip->stood || has_stood;
+    trip->stood = trip->stood || hazard_has_surely_stood(hazard);
 }
 
 /** The safe commands are sent, and the vehicle moves (H1). */

@@ -2,7 +2,7 @@
 #include "scenario/hazard/hazard.h"
 
 enum { STANDS_MM_S = 100, FRESH_MS = 100, STEP_MS = 10, DIFFERS_M_PER_H = 3063 /* 0.85 m/s */ };
-enum { MOVING_MM_S = 300, MARGIN_MM_S = 50, MARGIN_MS = 100, STOOD_MS = 300 };
+enum { MOVING_MM_S = 300, MARGIN_MM_S = 50, MARGIN_MS = 100, STOOD_MS = 300, SURE_MS = 300 };
 
 static bool is_fresh(const hazard_t *hazard, agv_message_t message, uint32_t within_ms) {
     const hazard_message_t *seen = &hazard->messages[message];
@@ -71,6 +71,11 @@ void hazard_speed_tick(hazard_t *hazard) {
 /** Both reports are, and have been for some time: the supervisor cannot know that the vehicle moves. */
 bool hazard_is_at_standstill(const hazard_t *hazard) {
     return hazard->t_ms - hazard->moved_ms >= hazard->config->standstill_ms;
+}
+
+/** For so long that the supervisor must have seen it, too. */
+bool hazard_has_surely_stood(const hazard_t *hazard) {
+    return hazard->t_ms - hazard->moved_ms >= (uint64_t)hazard->config->standstill_ms + SURE_MS;
 }
 
 /** 101h reports standstill, and 363h does not contradict it for long enough. */
