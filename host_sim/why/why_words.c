@@ -424,7 +424,7 @@ void why_words_missing(text_t *text, const why_t *why, uint8_t bit) {
         say_trip_causes(text, why);
         break;
     case AGV_MISSING_THROTTLE:
-        text_add(text, "%03Xh reports %u counts", (unsigned)why->ids.of[AGV_MSG_THROTTLE_STATUS],
+        text_add(text, "%03Xh last reported %u counts", (unsigned)why->ids.of[AGV_MSG_THROTTLE_STATUS],
                  (unsigned)why->facts.throttle);
         break;
     default:

@@ -107,7 +107,7 @@ class FiveLogs(Case):
                 frame.data = bytes([0x0A]) + frame.data[1:]
             return frame
         log = traffic.log(traffic.frames(3000, edit=hangs))
-        self.assertEqual(self.text(log)[0], "NOT SUPERVISED: never left INIT, missing: throttle (050h reports 10 counts)")
+        self.assertEqual(self.text(log)[0], "NOT SUPERVISED: never left INIT, missing: throttle (050h last reported 10 counts)")
         self.assertEqual(self.why(log)["not_supervised"], ["throttle"])
 
     def test_what_flickers_at_the_end_is_missing_too(self):
