@@ -151,6 +151,23 @@ static void spend(agv_budget_t *budget, agv_progress_t *progress, bool off, uint
     restart_progress(budget, progress);
 }
 
+/* The two budgets that need the gear. An invalid 0A3h hides nothing: they do not change. */
+static void tick_gear(agv_budget_t *budgets, const agv_motion_facts_t *facts, bool idle, uint32_t elapsed_ms) {
+    const agv_config_t *const config = facts->config;
+    if (facts->vehicle->gear == 0u) {
+        return;
+    }
+    if (!idle || !gear_is_awaited(facts)) {
+        agv_budget_add(&budgets[AGV_BUDGET_GEAR], !idle && gear_is_another(facts), elapsed_ms,
+                       config->gear_deviation_ms);
+    }
+    if (!facts->gear_fresh) {
+        return; /* a slow 0A3h hides nothing */
+    }
+    agv_budget_add(&budgets[AGV_BUDGET_THROTTLE_IN_PARK], (facts->vehicle->gear == (uint8_t)AGV_GEAR_P) && !idle,
+                   elapsed_ms, config->throttle_in_park_ms);
+}
+
 void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_t *facts, uint32_t elapsed_ms) {
     const agv_config_t *const config = facts->config;
     agv_budget_t *const budgets = checks->budgets;
@@ -167,18 +184,7 @@ void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_
           config->throttle_deviation_ms); /* at idle nothing shows that the throttle obeys */
     agv_budget_add(&budgets[AGV_BUDGET_AUTOPILOT_OFF], facts->commands->autopilot_off, elapsed_ms,
                    config->autopilot_off_ms);
-    if (facts->vehicle->gear == 0u) {
-        return; /* an invalid 0A3h hides nothing: the budgets of the gear do not change */
-    }
-    if (!idle || !gear_is_awaited(facts)) {
-        agv_budget_add(&budgets[AGV_BUDGET_GEAR], !idle && gear_is_another(facts), elapsed_ms,
-                       config->gear_deviation_ms);
-    }
-    if (!facts->gear_fresh) {
-        return; /* a slow 0A3h hides nothing */
-    }
-    agv_budget_add(&budgets[AGV_BUDGET_THROTTLE_IN_PARK], (facts->vehicle->gear == (uint8_t)AGV_GEAR_P) && !idle,
-                   elapsed_ms, config->throttle_in_park_ms);
+    tick_gear(budgets, facts, idle, elapsed_ms);
 }
 
 bool agv_motion_checks_doubts_wheels(const agv_motion_checks_t *checks, const agv_vehicle_t *vehicle) {
