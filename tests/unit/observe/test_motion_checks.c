@@ -658,6 +658,28 @@ void test_throttle_in_pulses_adds_up(void) {
     TEST_ASSERT_TRUE(is_active(THROTTLE));
 }
 
+/* Within the limit and above idle the time is subtracted: 400 ms, less 100 ms of 200 ms. */
+/* Shows: SUP-11, THROTTLE_DEVIATION */
+void test_a_throttle_within_the_limit_takes_from_the_budget(void) {
+    command_throttle(0);
+    throttle(26);
+    begin();
+    run(399);
+    throttle(25);
+    run(201);
+    throttle(26);
+    begin();
+    expect_after(199, THROTTLE);
+}
+
+/* Shows: SUP-11, THROTTLE_DEVIATION */
+void test_a_throttle_that_is_idle_by_a_setting_may_be_above_its_command(void) {
+    config.throttle_idle_counts = 60;
+    command_throttle(0);
+    throttle(50);
+    expect_after(500, THROTTLE);
+}
+
 /* A rise that follows the command is no step back: each ramp down is a drop again. */
 /* Shows: SUP-11 */
 void test_a_rise_with_the_command_does_not_count(void) {
@@ -795,10 +817,12 @@ void test_an_ignored_n_at_idle_adds_nothing(void) {
 
 /* 100 ms above idle in each second: 900 ms after 9 s, and the last 100 ms in the tenth. */
 /* Shows: SUP-11, GEAR_DEVIATION */
-void test_a_throttle_in_pulses_does_not_hide_another_gear(void) {
-    vehicle.gear = AGV_GEAR_R;
+TEST_CASE(AGV_GEAR_R, AGV_GEAR_D)
+TEST_CASE(AGV_GEAR_D, AGV_GEAR_R)
+void test_a_throttle_in_pulses_does_not_hide_another_gear(int gear, int commanded) {
+    vehicle.gear = (uint8_t)gear;
     vehicle.throttle = 2;
-    agv_commands_take(&commands, AGV_MSG_GEAR_COMMAND, (const uint8_t[8]){AGV_GEAR_D});
+    agv_commands_take(&commands, AGV_MSG_GEAR_COMMAND, (const uint8_t[8]){(uint8_t)commanded});
     command_throttle(250);
     begin();
     for (unsigned second = 0; second < 9; second++) {
