@@ -179,6 +179,22 @@ void test_p_that_was_sent_in_manual_does_not_pass_in_motion(void) {
     expect_dropped(0x168, park);
 }
 
+/* Nor does D, which was sent before, when 0A3h is silent: the operator may have changed the gear since. */
+/* Shows: TOP-2, GEAR_STATUS_TIMEOUT */
+void test_d_that_was_sent_in_manual_does_not_pass_in_motion(void) {
+    static const uint8_t drive[8] = {1};
+    f.config.gateway_in_manual = AGV_IN_MANUAL_ALL;
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_GEAR_STATUS_TIMEOUT, false);
+    f.traffic[AGV_MSG_GEAR_COMMAND].muted = true;
+    fixture_standby(&f);
+    fixture_run(&f, 200);
+    expect_pass(0x168, drive, drive);
+    f.traffic[AGV_MSG_GEAR_STATUS].muted = true;
+    fixture_drive(&f, 500);
+    fixture_run(&f, 200);
+    expect_dropped(0x168, drive);
+}
+
 /* ---- Withheld commands ---- */
 
 /* Each time, one 363h reports manual before the message, and one reports autopilot after it. */
