@@ -159,7 +159,7 @@ static bool test_memory(const zephyr_hal_memory_t *memory) {
 
 #if defined(CONFIG_AGV_BROWN_OUT_LEVEL)
 static bool test_supply(void) {
-    return zephyr_chip_options().brown_out_level >= CONFIG_AGV_BROWN_OUT_LEVEL;
+    return (CONFIG_AGV_BROWN_OUT_LEVEL == 0) || (zephyr_chip_options().brown_out_level >= CONFIG_AGV_BROWN_OUT_LEVEL);
 }
 #else
 static bool test_supply(void) {
