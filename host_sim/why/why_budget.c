@@ -145,10 +145,9 @@ static bool gear_is_awaited(const why_t *why) {
     return (why->facts.gear_command <= AGV_GEAR_R) && (why->facts.gear != why->facts.gear_command);
 }
 
-/** At idle, neither the throttle nor an awaited gear takes. */
+/** At idle an awaited gear does not take. */
 static bool shows_nothing(const why_t *why, const row_t *row) {
-    return !is_above_idle(why) &&
-           ((row->is_bad == throttle_is_above) || ((row->is_bad == is_driven_in_another_gear) && gear_is_awaited(why)));
+    return !is_above_idle(why) && (row->is_bad == is_driven_in_another_gear) && gear_is_awaited(why);
 }
 
 /** Count the time since the last call: a bad microsecond adds 2, a good one takes 1. */
