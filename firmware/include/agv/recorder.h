@@ -42,8 +42,7 @@ typedef enum {
 #define AGV_MISSING_STATE 0x01u         /**< the state is not SAFE */
 #define AGV_MISSING_VCU_HEARTBEAT 0x02u /**< the VCU is not alive */
 #define AGV_MISSING_EPS_HEARTBEAT 0x04u /**< the EPS is not alive */
-#define AGV_MISSING_TRIP_CAUSE                                                                                         \
-    0x08u /**< a fault of class trip is active; at a reset those of the AI computer do not count */
+#define AGV_MISSING_TRIP_CAUSE 0x08u /**< a fault of class trip is active; at a reset, one not from the AI computer */
 #define AGV_MISSING_STANDSTILL 0x10u /**< the vehicle is not at standstill */
 #define AGV_MISSING_MANUAL 0x20u     /**< 363h does not report manual */
 #define AGV_MISSING_BUTTON 0x40u    /**< the press had no rising edge after the trip, or the button's signal was lost */

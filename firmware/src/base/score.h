@@ -45,7 +45,7 @@ static inline bool agv_held_since_tick(bool before, bool now, uint32_t elapsed_m
  */
 void agv_budget_add(agv_budget_t *budget, bool condition, uint32_t elapsed_ms, uint32_t limit_ms);
 
-/** As agv_budget_add(), but time without the condition subtracts nothing: it does not show that the fault has ended. */
+/** As agv_budget_add(), but time without the condition subtracts nothing: the caller sets the budget to 0. */
 void agv_budget_gather(agv_budget_t *budget, bool condition, uint32_t elapsed_ms, uint32_t limit_ms);
 
 #endif

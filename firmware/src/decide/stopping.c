@@ -15,7 +15,7 @@ void agv_stopping_step(agv_stopping_t *stopping, const agv_timers_t *timers, con
     agv_budget_gather(&stopping->moved, agv_vehicle_may_move(vehicle, MOVING_MM_S), seen_ms, MOVING_MS);
     if (agv_vehicle_wheels_stand(timers)) {
         if (!stopping->stood || agv_timer_reached(timers, AGV_TIMER_WHEELS_STOOD)) {
-            stopping->moved = (agv_budget_t){0};
+            stopping->moved = (agv_budget_t){0}; /* the way to the stop, and what was long ago */
         }
         stopping->stood = true;
         stopping->not_stopping = false;

@@ -15,7 +15,7 @@
 typedef struct {
     uint16_t angle_raw; /**< 065h, raw (P5) */
     uint8_t throttle;   /**< 075h, counts */
-    uint8_t gear;       /**< 168h, agv_gear_t */
+    uint8_t gear;       /**< 168h, agv_gear_t; 0: none yet, or forgotten */
     uint8_t known;      /**< bit n: a valid command n was received in this engagement */
     bool autopilot_off; /**< 43Fh requests autopilot off */
 } agv_commands_t;
@@ -29,7 +29,7 @@ void agv_commands_forget(agv_commands_t *commands);
 /** Forget the commanded gear, because autopilot was left or entered: the operator may have changed it. */
 void agv_commands_forget_gear(agv_commands_t *commands);
 
-/** Whether a valid command of this kind was received in this engagement. */
+/** Whether a valid command of this kind was received in this engagement. A gear may be forgotten since: `gear` is 0 then. */
 bool agv_commands_has(const agv_commands_t *commands, uint32_t command);
 
 #endif
