@@ -56,9 +56,15 @@ static bool make_request(const given_t *given, atlas_request_t *request) {
         return report("--show prints one case: --results, --shard, --first and --second cannot be combined with it");
     }
     request->one = request->shows_one ? (uint32_t)given->show : 0;
-    return ((given->shard == NULL) || random_options_shard(given->shard, &request->shard, &request->shards)) &&
-           fault_option_take("--first", given->first, &request->first) &&
-           fault_option_take("--second", given->second, &request->second);
+    if (((given->shard != NULL) && !random_options_shard(given->shard, &request->shard, &request->shards)) ||
+        !fault_option_take("--first", given->first, &request->first) ||
+        !fault_option_take("--second", given->second, &request->second)) {
+        return false;
+    }
+    if ((request->first != NULL) && (request->first == request->second)) {
+        return report("--first and --second are the same fault, %s: a fault is not paired with itself", given->first);
+    }
+    return true;
 }
 
 status_t cmd_atlas(int argc, char **argv) {

@@ -35,7 +35,8 @@ ROWS = {
         ("--show 168999", "--show: case 168999 cannot happen, nor can any later one"),
         ("--show 100 --results r", "--show prints one case"),
         ("--show 4 --first BUS_OFF", "--show prints one case"),
-        ("--show 4 --shard 1/2", "--show prints one case")),
+        ("--show 4 --shard 1/2", "--show prints one case"),
+        ("--first BUS_OFF --second BUS_OFF", "--first and --second are the same fault, BUS_OFF: a fault is not paired with itself")),
     "campaign": (
         ("", "--runs is missing"),
         ("--runs 3", "--seed is missing"),

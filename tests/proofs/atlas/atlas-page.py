@@ -101,9 +101,9 @@ class Atlas:
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("results", nargs="+")
-    parser.add_argument("-o", "--out", required=True)
-    parser.add_argument("--partial", action="store_true")
+    parser.add_argument("results", nargs="+", metavar="RESULTS", help="a file that host_sim atlas --results wrote")
+    parser.add_argument("-o", "--out", required=True, metavar="FILE", help="the page to write, replaced if it exists")
+    parser.add_argument("--partial", action="store_true", help="make the page although results of some shards are missing")
     arguments = parser.parse_args()
     atlas = Atlas()
     try:
