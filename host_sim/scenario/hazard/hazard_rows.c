@@ -249,19 +249,6 @@ void hazard_rows_init(hazard_t *hazard) {
     }
 }
 
-void hazard_rows_frame(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV_DLC]) {
-    for (unsigned i = 0; i < hazard->score_counts[message]; i++) {
-        const unsigned r = hazard->score_rows[message][i];
-        const row_t *row = &ROWS[r];
-        if (row->engaged && !hazard->mode.autopilot) {
-            continue;
-        }
-        const int32_t cap = SCORE_CAP * (int32_t)hazard->thresholds[r];
-        const int32_t score = hazard->scores[r] + (row->is_bad(data, row->mask) ? 1 : -1);
-        hazard->scores[r] = (score < 0) ? 0 : (score > cap) ? cap : score;
-    }
-}
-
 /** Of a command, each engagement begins the deadline anew (SUP-3); not the one that is too many in mode_flapping_ms. */
 static uint64_t silent_since_ms(const hazard_t *hazard, const row_t *row) {
     const hazard_message_t *seen = &hazard->messages[row->message];
@@ -296,6 +283,23 @@ static bool is_in_grace(const hazard_t *hazard, const row_t *row) {
 
     return row->engaged && (row->form > STUCK) && mode->autopilot && mode->graced &&
            (hazard->t_ms - mode->engaged_ms < hazard->config->engaged_grace_ms);
+}
+
+void hazard_rows_frame(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV_DLC]) {
+    for (unsigned i = 0; i < hazard->score_counts[message]; i++) {
+        const unsigned r = hazard->score_rows[message][i];
+        const row_t *row = &ROWS[r];
+        if (row->engaged && !hazard->mode.autopilot) {
+            continue;
+        }
+        const bool bad = row->is_bad(data, row->mask);
+        if (bad && is_in_grace(hazard, row)) {
+            continue;
+        }
+        const int32_t cap = SCORE_CAP * (int32_t)hazard->thresholds[r];
+        const int32_t score = hazard->scores[r] + (bad ? 1 : -1);
+        hazard->scores[r] = (score < 0) ? 0 : (score > cap) ? cap : score;
+    }
 }
 
 /**

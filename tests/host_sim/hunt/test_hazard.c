@@ -331,6 +331,11 @@ static const stub_t PARKS = {.safe_ms = TRIP_MS, .parks_ms = TRIP_MS + 50, .sett
     "  - {at_ms: 3000, eps: set, field: mode, value: FFh}\n"                                                           \
     "  - {at_ms: 4739, vcu: unset, message: vehicle_status}\n"                                                         \
     "  - {at_ms: 7800, eps: unset, message: eps_status}\n"
+#define BAD_IN_GRACE                                                                                                   \
+    "  - {at_ms: 1500, eps: set, field: mode, value: FFh}\n"                                                           \
+    "  - {at_ms: 1990, eps: unset, message: eps_status}\n"                                                             \
+    "  - {at_ms: 2000, eps: send_every, message: eps_status, every_ms: 60}\n"                                          \
+    "  - {at_ms: 2000, eps: set, field: mode, value: FFh, frames: 3, again_every_ms: 480}\n"
 #define GEAR_LIES "  - {at_ms: 1857, vcu: set, field: gear, value: 02h, frames: 19, again_every_ms: 550}\n"
 #define GLITCHES(frames)                                                                                               \
     "  - {at_ms: 2000, operator: press, button: 1}\n"                                                                  \
@@ -587,6 +592,9 @@ static const struct {
     /* 363h with both mode bits begin no engagement */
     {HAZARD_FALSE_NODE, "the EPS is not in angle control", &MUTE,
      &(const stub_t){.setting = "engaged_grace_ms: 2000\n"}, NO_ENGAGEMENT},
+    /* bad frames in the grace time count for nothing afterwards, when three of eight are bad */
+    {HAZARD_FALSE_NODE, "the EPS is not in angle control", &(const stub_t){.setting = "engaged_grace_ms: 50\n"}, &MUTE,
+     BAD_IN_GRACE},
     /* a dead transmitter shows with the next status frame */
     {HAZARD_FALSE_NODE, "the supervisor's transmitter has failed",
      &(const stub_t){.setting = "status_frame_period_ms: 3000\n"},
