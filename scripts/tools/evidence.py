@@ -18,7 +18,7 @@ Figure = collections.namedtuple("Figure", "command date revision text")
 HEADING = "| claim | shown how | command | figure | not shown |"
 NAME = re.compile(r"\[`([\w-]+)`\]")
 FIGURES = "tests/proofs/figures.tsv"
-TITLES = ("killed", "crashed", "timed out", "survived", "equivalent")
+TITLES = ("killed", "crashed", "timed out", "found by a sanitizer", "survived", "equivalent")
 
 
 def read_table(root, place, columns, problems):

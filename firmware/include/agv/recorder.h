@@ -142,7 +142,10 @@ bool agv_recorder_get(const agv_recorder_t *recorder, uint32_t sequence, agv_eve
  */
 bool agv_recorder_get_trip(const agv_recorder_t *recorder, uint32_t index, agv_event_t *event);
 
-/** The oldest valid event that was not given to the log in flash yet; NULL if there is none. */
+/**
+ * The oldest valid event that was not given to the log in flash yet; NULL if there is none. A call looks at AGV_RECORDER_EVENTS
+ * numbers at most. Where a lost ring left a longer gap, it may return NULL, and the next call goes on from there.
+ */
 const agv_event_t *agv_recorder_next_to_store(agv_recorder_t *recorder);
 
 /**

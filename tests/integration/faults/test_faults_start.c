@@ -174,8 +174,8 @@ void test_the_gate_refuses_a_forbidden_frame(void) {
     TEST_ASSERT_EQUAL_UINT32(1, agv_supervisor_counters(&f.supervisor)->gate_refused);
     expect_fault(&f, AGV_FAULT_TX_GATE_REFUSED, true);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
-    expect_reason_after(&f, 1,
-                        AGV_FAULT_TX_GATE_REFUSED); /* faults are evaluated once a call, before anything is sent */
+    expect_led(&f, 0); /* faults are evaluated and shown once a call, before anything is sent */
+    expect_reason_after(&f, 1, AGV_FAULT_TX_GATE_REFUSED);
     expect_state(&f, AGV_STATE_TRIPPED);
     const agv_fault_set_t trips = agv_supervisor_active_trips(&f.supervisor);
     TEST_ASSERT_TRUE(agv_fault_is_in(&trips, AGV_FAULT_TX_GATE_REFUSED));

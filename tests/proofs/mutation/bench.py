@@ -1,7 +1,7 @@
 """The bench of a mutant: the core as a shared object under the test programs, and which test runs which line.
 
-Everything lies in build/mutation: tree (the build tree, preset mutation), core (the object of each file), plan.json (the
-tests with their times, and the lines that each runs), work-* (a mutant's object).
+Everything lies in build/mutation: tree (the build tree, preset mutation), core (the object of each file), sanitized (the same
+with sanitizers), plan.json (the tests with their times, and the lines that each runs), work-* (a mutant's object).
 """
 import collections
 import fcntl
@@ -20,6 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 BUILD = ROOT / "build/mutation"
 TREE = BUILD / "tree"
 CORE = BUILD / "core"
+SANITIZED = BUILD / "sanitized"
 SOURCES = ROOT / "firmware/src"
 # What a verdict rests on. Not the equivalents: they are asked for when results are merged.
 INPUTS = ("CMakePresets.json", "cmake", "firmware", "hal/include", "hal/sim", "tests/unit", "tests/integration",
@@ -29,12 +30,14 @@ INPUTS = ("CMakePresets.json", "cmake", "firmware", "hal/include", "hal/sim", "t
 INCLUDES = [f"-I{ROOT}/firmware/include", f"-I{SOURCES}", f"-I{ROOT}/hal/include"]
 COMPILE = ["gcc", "-std=c11", "-w", "-fPIC", "-fno-semantic-interposition", *INCLUDES]
 LINK = ["ld", "-shared", "-Bsymbolic"]
+SANITIZE = ["-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
+FOUND = 77  # exit status of a program in which a sanitizer found something
 SLOW_SECONDS = 1.0  # which lines such a test runs is not asked: it is taken to run all
 QUICK_SECONDS = 0.3  # tests that take longer, and those from other starts of the clock, run last
 START_SECONDS, LIKELY = 0.01, 0.3  # of a program; how likely it is to kill when nothing is known
 CRASHES, TIMEOUTS = 12, 3  # after so many nobody waits any more for an assertion that fails
 
-# what a test program did: passed, failed (an assertion, by: where), crash or timeout
+# what a test program did: passed, failed (an assertion, by: where), crash, timeout, or sanitizer (one found something)
 Run = collections.namedtuple("Run", "verdict by failures")
 
 
@@ -108,6 +111,15 @@ class Bench:
         compile_file(reference, original, "-O2")
         return compile_file(self.work / name, mutant, "-O2") and original.read_bytes() == mutant.read_bytes()
 
+    def sanitized(self, name, tests):
+        """The first of the tests in which a sanitizer finds something, or nothing; of the file that was built last."""
+        if not compile_file(self.work / name, self.work / "mutant.san.o", *SANITIZE):
+            raise SystemExit(f"{name}: the mutant compiles, but not with sanitizers")
+        others = [SANITIZED / f"{path.stem}.o" for path in core_files() if path.name != name]
+        link_sanitized([self.work / "mutant.san.o", *others], self.work / "sanitized")
+        found = (test["name"] for test in tests if run_sanitized(test, self.work / "sanitized").verdict == "sanitizer")
+        return next(found, "")
+
     def run(self, test, go_on=False):
         return run_test(test, self.work, go_on)
 
@@ -137,7 +149,7 @@ class Bench:
         return ""
 
     def try_mutant(self, mutant, only_quick=False):
-        """killed, survived, same, compile, crash or timeout, or open when only quick tests were to run; and by whom."""
+        """killed, survived, same, sanitizer, compile, crash or timeout, or open when only quick tests were to run; and by whom."""
         source = self.sources[mutant.file]
         if not self.build(mutant.file, source[:mutant.start] + mutant.text + source[mutant.end:]):
             return "compile", ""
@@ -148,15 +160,30 @@ class Bench:
         if not by and not counts["crash"] and not counts["timeout"]:
             if self.same_code(mutant.file):
                 return "same", ""
+            found_by = self.sanitized(mutant.file, quick)
+            if found_by:
+                return "sanitizer", found_by
             if only_quick:
                 return "open", ""
         by = by or self.kill(mutant, [test for test in tests if test not in quick], counts)
         return "killed" if by else next((kind for kind in ("crash", "timeout") if counts[kind]), "survived"), by
 
 
-def run_test(test, library, go_on=False):
+def link_sanitized(objects, folder):
+    folder.mkdir(exist_ok=True)
+    call(["gcc", "-shared", "-Wl,-Bsymbolic", *SANITIZE, *map(str, objects), "-o", str(folder / "libagv_core.so")])
+
+
+def run_sanitized(test, library):
+    """Only the core has sanitizers. The address sanitizer has to be loaded before all else."""
+    loaded = subprocess.run(["gcc", "-print-file-name=libasan.so"], check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
+    return run_test(test, library, more={"LD_PRELOAD": loaded, "ASAN_OPTIONS": f"detect_leaks=0:exitcode={FOUND}",
+                                         "UBSAN_OPTIONS": f"exitcode={FOUND}"})
+
+
+def run_test(test, library, go_on=False, more=None):
     """Limited by its time on the processor, not by that on the wall: others may be at work here."""
-    environment = {**os.environ, **test["environment"], "LD_LIBRARY_PATH": str(library)}
+    environment = {**os.environ, **test["environment"], "LD_LIBRARY_PATH": str(library), **(more or {})}
     if go_on:
         environment["AGV_MUTATION_GO_ON"] = "1"
     seconds = 1 + math.ceil(5 * test["seconds"])
@@ -165,6 +192,8 @@ def run_test(test, library, go_on=False):
     failures = [line.split("/")[-1] for line in done.stdout.decode("utf-8", "replace").splitlines() if ":FAIL" in line]
     if failures:
         return Run("failed", failures[0][:200], failures)
+    if more and done.returncode == FOUND:
+        return Run("sanitizer", "", [])
     if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
         return Run("timeout", "", [])
     return Run("crash" if done.returncode else "passed", "", [])
@@ -186,11 +215,20 @@ def prepare(key, old, say):
         others = [path for other, path in objects.items() if other != name]
         call(["ld", "-r", *others, "-o", str(CORE / f"without-{name}.o")])
     tests = read_tests()
+    prepare_sanitized()
     with tempfile.TemporaryDirectory(dir=BUILD) as folder:
         programs = measure(tests, old.get("programs", {}), pathlib.Path(folder), say)
     for test in tests:
         test["seconds"] = programs[test["name"].split("_wrap_in_")[0]]["seconds"]
     return {"digest": key, "tests": tests, "programs": programs, "lines": invert(tests, programs)}
+
+
+def prepare_sanitized():
+    SANITIZED.mkdir(exist_ok=True)
+    objects = [SANITIZED / f"{path.stem}.o" for path in core_files()]
+    for path, output in zip(core_files(), objects):
+        compile_file(path, output, *SANITIZE)
+    link_sanitized(objects, SANITIZED)
 
 
 def measure(tests, old, folder, say):
@@ -207,6 +245,8 @@ def measure(tests, old, folder, say):
         if programs[name].get("sum") != total:
             say(f"preparing: {name}")
             seconds = time_test(test)
+            if seconds < QUICK_SECONDS and run_sanitized(test, SANITIZED).verdict != "passed":
+                raise SystemExit(f"{name} fails with sanitizers without any mutant")
             lines = covered_lines(test, folder) if seconds < SLOW_SECONDS else None
             programs[name] = {"sum": total, "seconds": seconds, "lines": lines}
     return programs

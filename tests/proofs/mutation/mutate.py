@@ -23,7 +23,7 @@ import mutants  # noqa: E402
 import rows  # noqa: E402
 
 KILLED_AT_LEAST, EQUIVALENT_AT_MOST = 95.0, 5.0
-VERDICTS = ("killed", "crash", "timeout", "survived")
+VERDICTS = ("killed", "crash", "timeout", "sanitizer", "survived")
 
 
 def say(text):
@@ -90,26 +90,25 @@ def open_bench(arguments):
 
 
 def command_run(arguments):
-    shard, shards = (int(part) for part in arguments.shard.split("/"))
-    if not 1 <= shard <= shards:
-        raise SystemExit(f"mutate: there is no shard {arguments.shard}")
+    shard, shards = arguments.shard
     with open_bench(arguments) as at:
         folder = arguments.results or results_folder(at.digest)
         folder.mkdir(parents=True, exist_ok=True)
         done = read_results(sorted(folder.glob("*.jsonl")))
         wanted = [mutant for mutant in all_mutants(arguments.names)[shard - 1::shards]
                   if mutant.id not in done or (done[mutant.id]["verdict"] == "open" and not arguments.quick)]
-        say(f"shard {arguments.shard}: {len(wanted)} mutants")
+        say(f"shard {shard}/{shards}: {len(wanted)} mutants")
         with open(folder / f"{shard}-of-{shards}.jsonl", "a", encoding="utf-8") as out:
             try_all(wanted, at, out, arguments)
 
 
 def command_try(arguments):
     found = {mutant.id: mutant for mutant in all_mutants()}
+    unknown = [key for key in arguments.names if key not in found]
+    if unknown or not arguments.names:
+        raise SystemExit(f"mutate: there is no mutant {unknown[0]}" if unknown else "mutate: try needs the id of a mutant")
     with open_bench(arguments) as at:
         for key in arguments.names:
-            if key not in found:
-                raise SystemExit(f"mutate: there is no mutant {key}")
             print(f"{key}  {found[key].text!r}  {' '.join(map(str, at.try_mutant(found[key])))}", flush=True)
 
 
@@ -130,7 +129,7 @@ def read_equivalents(found, problems):
 
 def table(found, verdicts):
     """Mutants by operator and verdict."""
-    columns = ("mutants", "killed", "crash", "timeout", "survived", "equivalent", "same", "compile")
+    columns = ("mutants", *VERDICTS, "equivalent", "same", "compile")
     print(f"{'operator':12}" + "".join(f"{name:>11}" for name in columns))
     for operator in (*mutants.OPERATORS, "all"):
         of = [verdicts[key] for key, mutant in found.items() if key in verdicts and operator in (mutant.operator, "all")]
@@ -163,7 +162,7 @@ def sum_up(verdicts, problems):
     if share > EQUIVALENT_AT_MOST:
         problems.append(f"{share:.2f} % are equivalent, {EQUIVALENT_AT_MOST} % are allowed")
     return (f"{counted} mutants, {of['killed']} killed by an assertion ({killed:.2f} %), {of['crash']} crashed, "
-            f"{of['timeout']} timed out, {of['survived']} survived; not counted: {of['equivalent']} equivalent ({share:.2f} %), "
+            f"{of['timeout']} timed out, {of['sanitizer']} found by a sanitizer, {of['survived']} survived; not counted: {of['equivalent']} equivalent ({share:.2f} %), "
             f"{of['same']} of the same machine code, {of['compile']} that do not compile")
 
 
@@ -181,6 +180,9 @@ def record(verdicts):
 def command_merge(arguments):
     folder = arguments.results or results_folder(bench.digest())
     paths = [pathlib.Path(name) for name in arguments.names] or sorted(folder.glob("*.jsonl"))
+    for path in paths:
+        if not path.is_file():
+            raise SystemExit(f"mutate: {path} is not a file of results")
     found = {mutant.id: mutant for mutant in all_mutants()}
     problems = []
     equivalents = read_equivalents(set(found), problems)
@@ -202,8 +204,19 @@ def command_merge(arguments):
 
 def command_rows(arguments):
     wanted = subprocess.run([bench.ROOT / "scripts/tools/traceability.py"], stdout=subprocess.PIPE, check=True, text=True).stdout
+    unknown = set(arguments.names) - rows.read_shown(wanted).keys()
+    if unknown:
+        raise SystemExit(f"mutate: there is no row {sorted(unknown)[0]}")
     with open_bench(arguments) as at:
         return rows.check(at, rows.read_shown(wanted), arguments.names)
+
+
+def shard_of(text):
+    """i/n, with i from 1 to n."""
+    shard, _, shards = text.partition("/")
+    if not (shard.isdecimal() and shards.isdecimal() and 1 <= int(shard) <= int(shards)):
+        raise argparse.ArgumentTypeError(f"there is no shard {text}: it is i/n, with i from 1 to n")
+    return int(shard), int(shards)
 
 
 def main():
@@ -212,7 +225,7 @@ def main():
                 "merge": command_merge, "rows": command_rows}
     parser.add_argument("command", choices=commands)
     parser.add_argument("names", nargs="*")
-    parser.add_argument("--shard", default="1/1", metavar="i/n")
+    parser.add_argument("--shard", default="1/1", type=shard_of, metavar="i/n")
     parser.add_argument("--quick", action="store_true", help="only the quick tests: what they do not kill stays open")
     parser.add_argument("--without", action="append", default=[], metavar="TEST", help="leave out a test program")
     parser.add_argument("--record", action="store_true", help="merge: write figures.tsv, if nothing failed")

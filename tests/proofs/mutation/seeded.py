@@ -1,13 +1,15 @@
 #!/usr/bin/python3
-"""Seeded fault of mutate: a mutant that one test kills must survive without that test."""
+"""Seeded faults of mutate: a mutant that one test kills must survive without that test, and one that reads behind a table must be
+found by a sanitizer."""
 import pathlib
 import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
+FILE = "names.c"
 # agv_missing_name is called by test_names alone
-FILE, SUFFIX, LINE = "names.c", "return:NULL", "missing_names[index]"
+KILLED, BEHIND, LINE = "return:NULL", "relational:<=", "missing_names[index]"
 
 
 def mutate(*arguments):
@@ -15,14 +17,14 @@ def mutate(*arguments):
                           check=False).stdout
 
 
-def find():
+def find(suffix):
     """The mutant with this end of its id on the line that holds the text."""
     (path,) = (ROOT / "firmware/src").rglob(FILE)
     lines = path.read_text(encoding="ascii").splitlines()
     for key in mutate("list", FILE).split():
-        if key.endswith(SUFFIX) and LINE in lines[int(key.split(":")[1]) - 1]:
+        if key.endswith(suffix) and LINE in lines[int(key.split(":")[1]) - 1]:
             return key
-    raise SystemExit(f"seeded: there is no mutant {SUFFIX} at '{LINE}' in {FILE}")
+    raise SystemExit(f"seeded: there is no mutant {suffix} at '{LINE}' in {FILE}")
 
 
 def verdict(*arguments):
@@ -30,10 +32,11 @@ def verdict(*arguments):
 
 
 def main():
-    key = find()
-    caught = verdict(key) == "killed" and verdict(key, "--without", "test_names") == "survived"
-    print(f"{int(caught)} of 1 seeded faults caught")
-    return 0 if caught else 1
+    killed, behind = find(KILLED), find(BEHIND)
+    caught = [verdict(killed) == "killed" and verdict(killed, "--without", "test_names") == "survived",
+              verdict(behind) == "sanitizer"]
+    print(f"{sum(caught)} of {len(caught)} seeded faults caught")
+    return 0 if all(caught) else 1
 
 
 sys.exit(main())

@@ -319,3 +319,29 @@ void test_the_reason_of_an_earlier_run_is_shown(void) {
     expect_evaluated(NONE, NONE, NONE, NONE);
     TEST_ASSERT_EQUAL_UINT32(AGV_FAULT_VCU_HEARTBEAT_LOST, agv_fault_monitor_shown(&monitor));
 }
+
+/* Also before the first evaluation. */
+void test_at_the_start_the_summary_names_no_fault(void) {
+    expect_summary(NONE, NONE, NONE, NONE);
+    TEST_ASSERT_FALSE(monitor.summary.eps_fault);
+}
+
+/* A tick ends what the hold time has ended, once. What is set afterwards stays. */
+void test_a_tick_after_the_hold_time_ends_nothing_more(void) {
+    event(AGV_FAULT_STEP_OVERRUN, 0);
+    tick(1000);
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_STEP_OVERRUN));
+    set(AGV_FAULT_STEP_OVERRUN, true);
+    tick(1001);
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_STEP_OVERRUN));
+}
+
+/* Without a change of the faults nothing is evaluated, also with other classes. */
+void test_without_a_change_nothing_is_evaluated(void) {
+    const agv_fault_set_t none = {{0}};
+    set(AGV_FAULT_BUS_OFF, true);
+    agv_fault_monitor_evaluate(&monitor, &none, true, &changes);
+    evaluate();
+    TEST_ASSERT_FALSE(changes.any);
+    expect_summary(NONE, NONE, NONE, NONE);
+}

@@ -415,3 +415,23 @@ void test_the_time_goes_on_across_the_wrap(void) {
     stamp(0xFFFFFFFFu, 999);
     expect_time(0, 5);
 }
+
+/* The time may be set back; when the timers are looked at next is no matter of the time before. */
+/* Shows: TIM-2 */
+void test_a_timer_that_starts_after_the_time_was_set_back_is_reached_in_time(void) {
+    begin(DURATION, 1000);
+    TEST_ASSERT_FALSE(reached(DURATION, 1001)); /* to be looked at again at 1100 */
+    begin(DURATION, 500);
+    TEST_ASSERT_FALSE(reached(DURATION, 599));
+    TEST_ASSERT_TRUE(reached(DURATION, 600));
+}
+
+/* Shows: TIM-2 */
+void test_the_time_that_is_spent_is_never_more_than_the_limit(void) {
+    advance(5000);
+    agv_timer_start_at(&timers, DURATION, 5000 - 99);
+    TEST_ASSERT_EQUAL_UINT32(99, agv_timer_spent_ms(&timers, &config, DURATION));
+    agv_timer_start_at(&timers, DURATION, 5000 - 2000);
+    TEST_ASSERT_TRUE(agv_timer_is_within(&timers, DURATION)); /* until the time advances */
+    TEST_ASSERT_EQUAL_UINT32(100, agv_timer_spent_ms(&timers, &config, DURATION));
+}

@@ -252,6 +252,18 @@ void test_a_late_tick_counts_by_what_it_sees(void) {
     expect(true);
 }
 
+/* 5 s of confirmation before the next trip do not count for it: the ms after the trip stays in the sum. */
+/* Shows: FSM-4 */
+void test_a_trip_begins_the_5_s_anew(void) {
+    agv_confirmation_park_sent(&confirmation);
+    run(6000, true, true);
+    agv_confirmation_start(&confirmation, &timers, true);
+    run(10, true, true);
+    TEST_ASSERT_EQUAL_UINT16(1, confirmation.off.sum_ms);
+    begin(false, true);
+    expect_after(499, false, true);
+}
+
 /* Shows: FSM-4 */
 void test_a_trip_clears_the_sums(void) {
     agv_confirmation_park_sent(&confirmation);

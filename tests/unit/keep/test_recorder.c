@@ -1,8 +1,10 @@
 /* The flight recorder: ring, snapshots, torn events, restarts, events still to be stored. */
 #include "agv/recorder.h"
 
+#include <stddef.h>
 #include <string.h>
 
+#include "agv/checksum.h"
 #include "agv/state.h"
 #include "unity.h"
 
@@ -622,4 +624,71 @@ void test_a_crash_is_recorded_with_its_addresses(void) {
     add(1);
     TEST_ASSERT_TRUE(agv_recorder_get(&recorder, 4, &event));
     TEST_ASSERT_EQUAL_HEX8_ARRAY(seen, event.frames[0], AGV_DLC); /* later events have the snapshot again */
+}
+
+/* After a start in empty memory and one restart there are free places for two more trips. */
+/* Shows: INT-3 */
+void test_trips_after_a_restart_fill_the_free_places_first(void) {
+    memset(&recorder, 0, sizeof recorder);
+    agv_recorder_start(&recorder);
+    trip(1);
+    agv_recorder_start(&recorder);
+    trip(2);
+    trip(3);
+    expect_trips(3, 3);
+}
+
+/* Half of all numbers ahead is not newer. */
+/* Shows: TIM-2 */
+void test_a_trip_half_of_all_numbers_ahead_is_not_newer(void) {
+    recorder.next_sequence = 0x7FFFFFFFu;
+    trip(1);
+    memset(recorder.events, 0, sizeof recorder.events);
+    agv_recorder_start(&recorder);
+    TEST_ASSERT_EQUAL_UINT32(0, agv_recorder_next_sequence(&recorder));
+}
+
+/* One less than half of all numbers ahead is newer: of a trip, and of an event in the ring. */
+/* Shows: TIM-2 */
+void test_just_less_than_half_of_all_numbers_ahead_is_newer(void) {
+    recorder.next_sequence = 0x7FFFFFFEu;
+    trip(1);
+    memset(recorder.events, 0, sizeof recorder.events);
+    agv_recorder_start(&recorder);
+    TEST_ASSERT_EQUAL_UINT32(0x7FFFFFFFu, agv_recorder_next_sequence(&recorder));
+    setUp();
+    add(1);
+    recorder.next_sequence = 0x7FFFFFFFu;
+    add(1);
+    agv_recorder_start(&recorder);
+    TEST_ASSERT_EQUAL_UINT32(0x80000000u, agv_recorder_next_sequence(&recorder));
+}
+
+/* A kept event is of a later version, which uses the reserved byte. Its place is filled anew, with a 0. */
+void test_the_reserved_byte_of_a_new_event_is_0(void) {
+    agv_event_t event;
+    add(1);
+    recorder.events[0].reserved = 1;
+    recorder.events[0].checksum =
+        (uint16_t)(agv_crc32(AGV_CRC32_START, &recorder.events[0], offsetof(agv_event_t, checksum)) >> 16u);
+    agv_recorder_start(&recorder);
+    expect_there(0);
+    add(256);
+    TEST_ASSERT_TRUE(agv_recorder_get(&recorder, 256, &event));
+    TEST_ASSERT_EQUAL_UINT8(0, event.reserved);
+}
+
+/* The ring is lost, but not the trip 256, and all was stored: the mark starts at 0. A call goes at most 256 numbers further. */
+/* Shows: INT-1, INT-3 */
+void test_a_mark_far_behind_reaches_the_newest_event_in_two_calls(void) {
+    add(256);
+    trip(256);
+    add(300);
+    (void)store_all(301);
+    memset(recorder.events, 0, sizeof recorder.events);
+    agv_recorder_start(&recorder);
+    TEST_ASSERT_EQUAL_UINT32(257, agv_recorder_next_sequence(&recorder));
+    add(1);
+    TEST_ASSERT_NULL(agv_recorder_next_to_store(&recorder));
+    TEST_ASSERT_EQUAL_UINT32(1, store_all(257));
 }

@@ -426,3 +426,14 @@ void test_at_the_engagement_the_deadlines_of_commands_begin_anew(uint32_t start_
     TEST_ASSERT_FALSE(judge(AGV_MSG_TURN_SIGNAL_COMMAND, start_ms + 5061));
     TEST_ASSERT_TRUE(judge(AGV_MSG_EPS_STATUS, start_ms + 5061));
 }
+
+/* One message a tick, in their order: the first tick the first one. */
+/* Shows: TIM-2 */
+void test_each_tick_ages_the_next_message(void) {
+    for (uint32_t i = 0; i < AGV_MSG_COUNT; i++) {
+        tick(6001);
+        for (uint32_t k = 0; k < AGV_MSG_COUNT; k++) {
+            TEST_ASSERT_EQUAL_UINT32((k <= i) ? AGV_AGE_MAX : 6001, agv_liveness_age_ms(&liveness, &timers, k));
+        }
+    }
+}

@@ -936,6 +936,23 @@ void test_how_much_two_speeds_may_differ(int left_mm_s, int right_mm_s, unsigned
     TEST_ASSERT_EQUAL(differ, is_active(SPEED));
 }
 
+/* A wheel faster than 1000 m/s counts as 1000 m/s. The other one turns backwards: their mean is 666 mm/s against 500 + 166, or
+ * 667. */
+/* Shows: SUP-12, SPEED_IMPLAUSIBLE */
+TEST_CASE(2000000, -998667, false)
+TEST_CASE(2000000, -998666, true)
+TEST_CASE(-998667, 2000000, false)
+TEST_CASE(-998666, 2000000, true)
+TEST_CASE(-2000000, 998667, false)
+TEST_CASE(-2000000, 998666, true)
+TEST_CASE(998667, -2000000, false)
+TEST_CASE(998666, -2000000, true)
+void test_a_wheel_that_is_faster_than_a_vehicle_counts_as_1000_m_s(int32_t left_mm_s, int32_t right_mm_s, bool differ) {
+    speeds(left_mm_s, right_mm_s, 0);
+    run(5000);
+    TEST_ASSERT_EQUAL(differ, is_active(SPEED));
+}
+
 /* Always, also while not judged. An engagement does not clear the budget. */
 /* Shows: SUP-12 */
 void test_speeds_are_compared_always(void) {
@@ -1051,6 +1068,24 @@ void test_an_engagement_begins_a_way_at_0(void) {
     expect_after(100, THROTTLE);
 }
 
+/* The same when the first tick is late, so that the budget is never empty: 2 ms, and 498. */
+/* Shows: SUP-10, SUP-11, TIM-4 */
+void test_an_engagement_begins_a_way_at_0_before_a_late_tick(void) {
+    agv_motion_checks_engage(&checks);
+    steer(10000);
+    command_throttle(0);
+    vehicle.throttle = 100;
+    agv_motion_checks_tick(&checks, &facts, 2);
+    measured(9249);
+    throttle(76);
+    run(497);
+    TEST_ASSERT_FALSE(is_active(STEERING));
+    TEST_ASSERT_FALSE(is_active(THROTTLE));
+    run(1);
+    TEST_ASSERT_TRUE(is_active(STEERING));
+    TEST_ASSERT_TRUE(is_active(THROTTLE));
+}
+
 /* Cleared, and 25.0 degrees or 25 counts back: in the next engagement one step of 25 clears again. */
 /* Shows: SUP-10, SUP-11 */
 void test_an_engagement_forgets_the_steps_back(void) {
@@ -1084,5 +1119,13 @@ void test_after_a_gain_a_step_back_counts_at_once(void) {
     run(300);
     measured(9250); /* only back where it was */
     run(200);
+    TEST_ASSERT_TRUE(is_active(STEERING));
+}
+
+/* As after a start with a stored latch that names such a fault. */
+/* Shows: FSM-7 */
+void test_without_a_budget_the_faults_are_left_as_they_are(void) {
+    agv_fault_monitor_set(&faults, STEERING, true);
+    run(1);
     TEST_ASSERT_TRUE(is_active(STEERING));
 }

@@ -313,3 +313,10 @@ void test_an_engagement_begins_each_score_at_0(void) {
     eps_frames(2, 0, 0);
     expect_only(NONE);
 }
+
+/* A fault that a stored latch has set stays until one of these checks finds something. */
+/* Shows: FSM-7 */
+void test_without_a_finding_no_fault_is_touched(void) {
+    agv_fault_monitor_set(&faults, AGV_FAULT_GEAR_STATUS_INVALID, true);
+    expect_only(AGV_FAULT_GEAR_STATUS_INVALID);
+}

@@ -287,4 +287,32 @@ void test_a_message_that_does_not_exist_has_no_age(void) {
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, agv_supervisor_age_ms(&f.supervisor, AGV_MSG_COUNT));
     TEST_ASSERT_FALSE(agv_supervisor_is_fresh(&f.supervisor, AGV_MSG_NONE));
     TEST_ASSERT_FALSE(agv_supervisor_is_fresh(&f.supervisor, AGV_MSG_COUNT));
+    for (unsigned message = 32; message < 32 + AGV_MSG_COUNT; message++) { /* no number modulo 32 either */
+        TEST_ASSERT_FALSE(agv_supervisor_is_fresh(&f.supervisor, (agv_message_t)message));
+    }
+}
+
+/* A stored latch with a right checksum that names a fault as unresettable; then a restart by the watchdog. */
+static void restart_with(uint8_t unresettable) {
+    fixture_standby(&f);
+    agv_latch_write(&f.hal, AGV_LATCH_OPEN, AGV_FAULT_NONE, unresettable);
+    fixture_restart(&f, HAL_RESET_WATCHDOG);
+}
+
+/* Shows: FSM-7 */
+void test_a_fault_of_the_latch_stays_until_its_check_finds_something(void) {
+    restart_with(AGV_FAULT_GEAR_STATUS_INVALID);
+    expect_fault(&f, AGV_FAULT_GEAR_STATUS_INVALID, true);
+    expect_fault_after(&f, 100, AGV_FAULT_GEAR_STATUS_INVALID, true);
+}
+
+/* Shows: FSM-7, SUP-8 */
+TEST_CASE(AGV_AI_LOST_WARN, 1)
+TEST_CASE(AGV_AI_LOST_TRIP, 0)
+void test_a_lost_ai_computer_in_the_latch_has_the_class_of_manual(int class_in_manual, uint32_t warnings) {
+    f.config.ai_lost_in_manual = (uint16_t)class_in_manual;
+    restart_with(AGV_FAULT_AI_HEARTBEAT_LOST);
+    const agv_fault_set_t trips = agv_supervisor_active_trips(&f.supervisor);
+    TEST_ASSERT_EQUAL(warnings == 0, agv_fault_is_in(&trips, AGV_FAULT_AI_HEARTBEAT_LOST));
+    TEST_ASSERT_EQUAL_UINT32(warnings, agv_supervisor_counters(&f.supervisor)->warnings);
 }

@@ -510,3 +510,11 @@ void test_an_override_that_waits_is_discarded_too(void) {
     discard(HAL_CAN_VEHICLE);
     EXPECT_COUNT_AFTER(10, 1);
 }
+
+void test_there_is_a_report_only_after_something_was_done(void) {
+    TEST_ASSERT_FALSE(agv_transmitter_has_report(&transmitter));
+    burst();
+    TEST_ASSERT_TRUE(agv_transmitter_has_report(&transmitter));
+    (void)report();
+    TEST_ASSERT_FALSE(agv_transmitter_has_report(&transmitter));
+}

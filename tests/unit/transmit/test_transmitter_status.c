@@ -239,3 +239,23 @@ void test_the_status_frame_across_the_wrap(void) {
     EXPECT_COUNT_AFTER(99, 1);
     EXPECT_COUNT_AFTER(201, 4);
 }
+
+static void status_at(uint32_t now_ms) {
+    agv_timers_advance(&timers, &config, now_ms, 0);
+    agv_transmitter_status(&transmitter, &orders);
+}
+
+/* Off the bus from the start at 1000 on: none was sent, so none is sent again, also after half of the clock's range. */
+/* Shows: TOP-3, TIM-2 */
+void test_a_status_frame_that_was_never_sent_is_not_sent_again(void) {
+    with_status_frame();
+    agv_timer_start(&timers, AGV_TIMER_BUS_OFF);
+    status_at(1001);
+    status_at(1001u + 0x40000000u);
+    status_at(1000u + 0x7FFFFFFBu);
+    agv_timers_advance(&timers, &config, 1000u + 0x7FFFFFFCu, 0);
+    agv_timer_stop(&timers, AGV_TIMER_BUS_OFF);
+    discard(HAL_CAN_VEHICLE);
+    agv_transmitter_status(&transmitter, &orders);
+    TEST_ASSERT_EQUAL_UINT(0, sent_count); /* it waits for its slot */
+}
