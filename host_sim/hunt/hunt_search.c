@@ -9,7 +9,6 @@
 #include "common/prng.h"
 #include "hunt/hunt.h"
 #include "hunt/hunt_state.h"
-#include "io/checkpoint.h"
 #include "text/units.h"
 #include "text/words.h"
 #include "ui/progress.h"
@@ -20,6 +19,7 @@ enum { LOOK_EVERY = 16 };
 /** All of it. */
 typedef struct {
     const hunt_request_t *request;
+    checkpoint_t checkpoint;
     hunt_state_t state;
     hunt_play_t play;
     uint8_t seen[HUNT_FEATURE_BYTES]; /**< in this piece */
@@ -29,7 +29,7 @@ typedef struct {
     uint64_t processor_began_ms;
     uint64_t runs; /**< from the beginning on, with those that the checkpoint does not have yet */
     uint64_t virtual_ms;
-    output_t file;
+    output_t file; /**< of the checkpoint or of a scenario */
     progress_t progress;
 } hunt_t;
 
@@ -163,7 +163,6 @@ static uint64_t next_piece(const hunt_t *hunt) {
 }
 
 static went_t run_all(hunt_t *hunt) {
-    const hunt_request_t *request = hunt->request;
     went_t went = GOES_ON;
 
     while (went == GOES_ON) {
@@ -174,7 +173,7 @@ static went_t run_all(hunt_t *hunt) {
             hunt->state.spent_ms = spent_ms(hunt);
             hunt->state.processor_ms = processor_ms(hunt);
             begin_counting(hunt);
-            went = hunt_state_save(request, &hunt->state, &hunt->file) ? GOES_ON : FAILED;
+            went = hunt_state_save(&hunt->checkpoint, &hunt->state, &hunt->file) ? GOES_ON : FAILED;
         }
     }
     return went;
@@ -215,7 +214,7 @@ static void note_interrupted(const hunt_t *hunt) {
 
 static status_t run_until_end(hunt_t *hunt) {
     /* Before the first run, so that none is lost. */
-    if (!hunt_state_load(hunt->request, &hunt->state) || !checkpoint_may_save(hunt->request->checkpoint, &hunt->file)) {
+    if (!hunt_state_load(hunt->request, &hunt->checkpoint, &hunt->state, &hunt->file)) {
         return STATUS_UNUSABLE;
     }
     interrupt_hold();
@@ -244,6 +243,7 @@ status_t hunt_run(const hunt_request_t *request) {
     hunt->request = request;
     const status_t status = run_until_end(hunt);
     output_discard(&hunt->file);
+    checkpoint_close(&hunt->checkpoint);
     free(hunt);
     interrupt_release();
     return status;

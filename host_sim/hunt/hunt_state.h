@@ -7,6 +7,7 @@
 
 #include "hunt/hunt.h"
 #include "hunt/hunt_found.h"
+#include "io/checkpoint.h"
 
 /** What is kept. */
 typedef struct {
@@ -18,10 +19,13 @@ typedef struct {
 } hunt_state_t;
 
 /** Write it. Nothing without a checkpoint. @return false: reported */
-bool hunt_state_save(const hunt_request_t *request, hunt_state_t *state, output_t *file);
+bool hunt_state_save(checkpoint_t *checkpoint, hunt_state_t *state, output_t *file);
 
-/** Resume from the checkpoint, if it exists. @return false: it belongs to another hunt, or goes on after this one's end;
- *  reported */
-bool hunt_state_load(const hunt_request_t *request, hunt_state_t *state);
+/**
+ * Open the checkpoint, for checkpoint_close() at the end, and resume from it if something is saved in it.
+ * @return false: it cannot be written, is in use, belongs to another hunt or program, or goes on after this one's end;
+ *         reported
+ */
+bool hunt_state_load(const hunt_request_t *request, checkpoint_t *checkpoint, hunt_state_t *state, output_t *file);
 
 #endif

@@ -8,7 +8,6 @@
 #include "campaign/soak/soak_internal.h"
 #include "common/interrupt.h"
 #include "common/prng.h"
-#include "io/checkpoint.h"
 #include "scenario/scenario_play.h"
 #include "text/units.h"
 
@@ -245,8 +244,7 @@ static bool prepare(soak_t *soak, const soak_request_t *request) {
     const scenario_watch_t watch = soak_watch(soak);
     scenario_testbed_watch(&soak->testbed, &watch);
     scenario_testbed_start(&soak->testbed);
-    return soak_load(soak) && checkpoint_may_save(soak->request->checkpoint, &soak->file) &&
-           ((request->results == NULL) || output_open(&soak->results, request->results));
+    return soak_load(soak) && ((request->results == NULL) || output_open(&soak->results, request->results));
 }
 
 status_t soak_run(const soak_request_t *request) {
@@ -268,6 +266,7 @@ status_t soak_run(const soak_request_t *request) {
     }
     output_discard(&soak->file);
     output_discard(&soak->results);
+    checkpoint_close(&soak->checkpoint);
     free(soak);
     interrupt_release();
     return status;

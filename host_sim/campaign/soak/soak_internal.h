@@ -7,6 +7,7 @@
 
 #include "campaign/soak/soak.h"
 #include "campaign/soak/soak_rows.h"
+#include "io/checkpoint.h"
 #include "io/output.h"
 #include "scenario/scenario_testbed.h"
 #include "text/text.h"
@@ -59,7 +60,6 @@ typedef struct {
     const soak_request_t *request;
     soak_state_t state;
     soak_steps_t steps[SOAK_ROWS_MAX];
-    uint32_t program;     /**< checksum of the program, when there is a checkpoint */
     uint64_t start_ms;    /**< of this shard, in the time of all */
     uint64_t duration_ms; /**< of this shard */
     bool gateway;
@@ -68,7 +68,8 @@ typedef struct {
     scenario_t scenario;
     scenario_testbed_t testbed;
     scenario_testbed_t saved; /**< what a checkpoint is read into */
-    output_t file;            /**< of the checkpoint */
+    checkpoint_t checkpoint;
+    output_t file; /**< of the checkpoint */
     soak_went_t went;
     uint64_t began_ms; /**< real time up to which `real_ms` counts */
     progress_t progress;
@@ -86,7 +87,10 @@ void soak_check_counters(soak_t *soak);
 /** @name soak_state.c @{ */
 /** Write the checkpoint. @return false: reported */
 bool soak_save(soak_t *soak);
-/** Resume from the checkpoint, if it exists. @return false: it belongs to another soak; reported */
+/**
+ * Open the checkpoint, for checkpoint_close() at the end, and resume from it if something is saved in it.
+ * @return false: it cannot be written, is in use, or belongs to another soak or program; reported
+ */
 bool soak_load(soak_t *soak);
 /** @} */
 

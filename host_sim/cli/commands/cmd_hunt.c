@@ -29,8 +29,10 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_NUMBER("--runs", "N", "number of runs, of all shards together", &request->runs, 1, RUNS_MAX),
         OPTION_DURATION_IN(DURATION_MIN, "--for-minutes", "stop after this time: 2h, or minutes alone",
                            &request->minutes, 1, MINUTES_MAX),
-        OPTION_TEXT("--checkpoint", "FILE", "save here after each 500 runs; the same command resumes from it",
-                    &request->checkpoint),
+        OPTION_TEXT(
+            "--checkpoint", "FILE",
+            "save here after each 500 runs; the same command of the same program resumes; for one hunt at a time",
+            &request->checkpoint),
         OPTION_TEXT("--found", "FOLDER", "folder for the scenarios of runs with a hazard (.)", &given->folder),
         OPTION_FLAG("--list-hazards", "print what counts as a hazard", &given->lists),
     };

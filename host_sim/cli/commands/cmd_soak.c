@@ -24,9 +24,11 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_t rows[] = {
         OPTION_DURATION_IN(DURATION_H, "--hours", "virtual time, of all shards together: 365d, or hours alone",
                            &given->hours, 1, HOURS_MAX),
-        OPTION_TEXT("--checkpoint", "FILE",
-                    "save here every 6 simulated hours and on interrupt; continue from it if it exists",
-                    &given->request.checkpoint),
+        OPTION_TEXT(
+            "--checkpoint", "FILE",
+            "save here every 6 simulated hours and on interrupt; the same command of the same program resumes; for one "
+            "soak at a time",
+            &given->request.checkpoint),
         OPTION_TEXT("--results", "FILE", "results as a line of JSON", &given->request.results),
     };
     const option_group_t groups[] = {

@@ -1,4 +1,5 @@
 """Runs the built program from outside. HOST_SIM in the environment is its path."""
+import contextlib
 import json
 import os
 import pathlib
@@ -136,6 +137,34 @@ class Case(unittest.TestCase):
                 return
             time.sleep(0.05)
         self.fail("it does not look for SIGINT")
+
+    def wait_until_it_has_a_lock(self, pid):
+        for _ in range(1000):
+            for about in pathlib.Path(f"/proc/{pid}/fdinfo").iterdir():
+                try:
+                    if "FLOCK" in about.read_text(encoding="ascii"):
+                        return
+                except FileNotFoundError:  # closed meanwhile
+                    pass
+            time.sleep(0.05)
+        self.fail("it has no lock")
+
+    @contextlib.contextmanager
+    def in_the_background(self, *arguments):
+        """A run that has locked its checkpoint. It is killed at the end."""
+        with subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=self.folder, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL) as process:
+            try:
+                self.wait_until_it_has_a_lock(process.pid)
+                yield process
+            finally:
+                process.kill()
+
+    def other_build(self):
+        """A program that does the same and is another file."""
+        other = self.write("other_build", pathlib.Path(PROGRAM).read_bytes() + b"\0")
+        other.chmod(0o755)
+        return other
 
     def assert_refused(self, result, *parts):
         """Exit status 2, and one line on standard error that names the thing."""

@@ -1,4 +1,6 @@
-"""Hunts: the same seed gives the same runs; one that is interrupted says what is saved."""
+"""Hunts: the same seed gives the same runs; one that is interrupted says what is saved; two do not use one
+checkpoint."""
+import os
 import re
 import signal
 import subprocess
@@ -56,6 +58,27 @@ class Hunt(Case):
     def test_in_the_background_of_a_script_a_signal_ends_it_too(self):
         """A shell starts it with SIGINT ignored, nohup with SIGHUP ignored: only the latter stays ignored."""
         self.assertRegex(self.interrupted(ignored=(signal.SIGINT, signal.SIGHUP)), r"^host_sim: interrupted after \d+ runs?\n$")
+
+    def test_one_hunt_at_a_time_uses_a_checkpoint(self):
+        arguments = ("--seed", 3, "--runs", 1, "--checkpoint")
+        with self.in_the_background("hunt", "--seed", 3, "--runs", 100000, "--checkpoint", "state") as process:
+            (self.folder / "link").symlink_to("state")
+            for name in ("state", "./state", "link"):
+                self.assert_refused(self.hunt(*arguments, name, status=(2,)), f"{name}: another hunt or soak is using it; wait")
+            self.assertEqual(self.figures(*arguments, "other")[0], 1)
+            process.kill()
+        # The lock is gone with its owner. On a busy machine that one may have saved more than one run.
+        self.assertNotIn("using", self.hunt(*arguments, "state", status=(0, 2)).stderr)
+
+    def test_an_empty_checkpoint_is_none(self):
+        """A hunt that is killed before it saves leaves one."""
+        self.write("state", "")
+        self.assertEqual(self.figures("--seed", 3, "--runs", 1, "--checkpoint", "state")[0], 1)
+
+    def test_a_checkpoint_is_a_regular_file(self):
+        os.mkfifo(self.folder / "pipe")
+        for name in ("pipe", ".", "/dev/full"):
+            self.assert_refused(self.hunt("--seed", 1, "--runs", 1, "--checkpoint", name, status=(2,)), f"{name}: not a hunt checkpoint")
 
     def test_a_checkpoint_that_cannot_be_written_is_refused_at_once(self):
         self.assert_refused(self.hunt("--seed", 1, "--runs", 100000, "--checkpoint", "no/where", status=(2,)), "no/where: ")

@@ -2,6 +2,7 @@
 gone on from."""
 import os
 import re
+import time
 import unittest
 
 from test_hunt import LAST, Case
@@ -39,9 +40,22 @@ class Checkpoint(Case):
         self.assert_refused(less, "state: its runs go up to 500: give --runs 500 or more, or remove it to start over")
         bad = self.hunt("--seed", 4, "--runs", 520, "--checkpoint", "state", status=(2,))
         self.assertIn("the checkpoint of another hunt", bad.stderr)
+        # one more byte in the program's file, and it is another one
+        other = self.hunt(*arguments, "--checkpoint", "state", status=(2,), program=self.other_build())
+        self.assert_refused(other, "state: the checkpoint of another build of host_sim; go on with that one, or remove it to start over")
+        self.assertEqual(self.figures(*arguments, "--checkpoint", "state"), whole)
         (self.folder / "state").write_bytes((self.folder / "state").read_bytes()[:-1])
         torn = self.hunt(*arguments, "--checkpoint", "state", status=(2,))
         self.assertIn("damaged", torn.stderr)
+
+    def test_a_checkpoint_that_was_replaced_is_still_in_use(self):
+        state = self.folder / "state"
+        with self.in_the_background("hunt", "--seed", 3, "--runs", 100000, "--checkpoint", state):
+            before = state.stat().st_ino
+            while state.stat().st_ino == before:
+                time.sleep(0.05)
+            bad = self.hunt("--seed", 3, "--runs", 1, "--checkpoint", state, status=(2,))
+            self.assert_refused(bad, "another hunt or soak is using it")
 
     def test_runs_of_a_shard_go_up_to_the_end_of_its_last_batch(self):
         arguments = ("--seed", 5, "--shard", "2/2", "--checkpoint", "state")
