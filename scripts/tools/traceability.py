@@ -168,7 +168,7 @@ def evidence_by_row(root, shown, problems):
     level_of, waiting, rows = levels(root, problems), not_built(root), set(shown)
     code, proven, place_of = trace_code(root, shown), trace_proofs(root, shown, problems), evidence.places(root)
     others = [evidence.mutants(root, rows, problems), evidence.hazards(root, rows, problems), evidence.atlas(root, rows)]
-    lines = ["| row | tests | proofs | mutants of | hunt | atlas | evidence | code |", "|---|---|---|---|---|---|---|---|"]
+    lines = ["| row | tests | proofs | mutants of the file | hunt | atlas | evidence | code |", "|---|---|---|---|---|---|---|---|"]
     for row in (row for row in shown if row not in faults):
         count = count_sources(shown[row])
         level = level_of.get(row, ", ".join(sorted(count)))

@@ -145,6 +145,7 @@ typedef struct {
     uint64_t dropped_ms;
     hazard_first_t first;   /**< after the trip, or after its angle was dropped */
     hazard_first_t perhaps; /**< after its angle was perhaps dropped */
+    hazard_first_t before;  /**< the same before it was perhaps dropped once more, of each time */
     bool was_deaf;          /**< in bus-off */
     uint16_t kept;          /**< the last right value */
     uint64_t kept_until_ms; /**< it may be sent again until then */

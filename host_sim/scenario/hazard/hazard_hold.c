@@ -22,6 +22,7 @@ static void extend_range(hazard_range_t *range, int32_t ddeg) {
 /** After a trip, what an EPS that takes no angle measures may be wrong. */
 static void forget_measured(hazard_t *hazard) {
     hazard->hold.first.any = false;
+    hazard->hold.before.any = false;
     hazard->hold.measured_count = 0;
 }
 
@@ -103,6 +104,7 @@ static void trip_now(hazard_t *hazard, uint32_t within_ms) {
     hold->is_dropped = false;
     hold->first.any = false;
     hold->perhaps.any = false;
+    hold->before.any = false;
     hold->kept_until_ms = 0;
 }
 
@@ -182,7 +184,8 @@ static bool may_be_held(const hazard_t *hazard, int32_t held_ddeg) {
     const bool is_kept = (held_ddeg + CENTRE_DDEG == (int32_t)hold->kept) && (hazard->t_ms <= hold->kept_until_ms);
 
     return is_kept || is_within(&hold->now, held_ddeg) || is_of_trip(hazard, held_ddeg) ||
-           is_of_first(hazard, &hold->first, held_ddeg) || is_of_first(hazard, &hold->perhaps, held_ddeg);
+           is_of_first(hazard, &hold->first, held_ddeg) || is_of_first(hazard, &hold->perhaps, held_ddeg) ||
+           is_of_first(hazard, &hold->before, held_ddeg);
 }
 
 /** A right angle may be sent again, until it is out of date or manual is reported. */
@@ -241,6 +244,20 @@ static void follow_hearing(hazard_t *hazard) {
     hold->was_deaf = is_deaf;
 }
 
+/** The EPS perhaps takes no angle: the supervisor drops the one that it took after the last such time, or still has it. */
+static void drop_perhaps(hazard_t *hazard) {
+    hazard_first_t *perhaps = &hazard->hold.perhaps;
+    hazard_first_t *before = &hazard->hold.before;
+
+    if (perhaps->any) {
+        const hazard_range_t range = is_in_date(hazard, before) ? before->range : perhaps->range;
+        *before = *perhaps;
+        extend_range(&before->range, range.low_ddeg);
+        extend_range(&before->range, range.high_ddeg);
+        perhaps->any = false;
+    }
+}
+
 /** The steering went where the supervisor had it go. */
 void hazard_hold_tick(hazard_t *hazard) {
     const hazard_hold_t *hold = &hazard->hold;
@@ -251,7 +268,7 @@ void hazard_hold_tick(hazard_t *hazard) {
         forget_measured(hazard);
     }
     if (hazard_eps_perhaps_takes_none(hazard)) {
-        hazard->hold.perhaps.any = false;
+        drop_perhaps(hazard);
     }
     if (!hold->is_wrong || (hazard->t_ms - hold->last_ms > NEW_HOLD_MS)) {
         return;

@@ -94,6 +94,7 @@ static void note_manual(hazard_t *hazard, bool manual) {
         mode->handback_ms = hazard->t_ms;
         hazard->hold.first.any = false;
         hazard->hold.perhaps.any = false;
+        hazard->hold.before.any = false;
     }
     if (manual) {
         mode->heard = (mode->manual && mode->heard) || hazard_is_hearing(hazard);

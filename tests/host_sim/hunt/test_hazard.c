@@ -280,6 +280,14 @@ static const stub_t PARKS = {.safe_ms = TRIP_MS, .parks_ms = TRIP_MS + 50, .sett
 #define TURNS                                                                                                          \
     "  - {at_ms: 2600, ai: drive, gear: D, throttle_pct: 60, steer_deg: -60}\n"                                        \
     "  - {at_ms: 3190, ai: mute, message: steering_command}\n"
+/* 60 degrees are measured after the first invalid angles, and -60 when the next ones begin */
+#define BAD_ANGLES_TWICE                                                                                               \
+    "  - {at_ms: 2990, vcu: set, field: mode_bits, value: 2h}\n"                                                       \
+    "  - {at_ms: 3400, ai: drive, gear: D, throttle_pct: 60, steer_deg: 60}\n"                                         \
+    "  - {at_ms: 3600, eps: set, field: angle, value: 4651h, frames: 4}\n"                                             \
+    "  - {at_ms: 3900, ai: drive, gear: D, throttle_pct: 60, steer_deg: -60}\n"                                        \
+    "  - {at_ms: 4390, ai: mute, message: steering_command}\n"                                                         \
+    "  - {at_ms: 4400, eps: set, field: angle, value: 4651h, frames: 8}\n"
 #define NOT_OBEYED "the vehicle does not obey the safe commands"
 #define ANOTHER_ANGLE "the supervisor steers to another angle"
 #define NOT_SENT "the supervisor sent a command that the AI computer did not send"
@@ -402,6 +410,17 @@ static const struct {
     {HAZARD_STEERING, ANOTHER_ANGLE, &HOLDS_AN_OLD_ANGLE, NULL, TURNS},
     {HAZARD_NONE, NULL, NULL, &HOLDS_AN_OLD_ANGLE,
      "  - {at_ms: 2500, supervisor: fill_queue}\n" TURNS "  - {at_ms: 3195, supervisor: free_queue}\n"},
+    /* who took an angle between two times without one still has it until the second one has lasted for some frames */
+    {HAZARD_STEERING, ANOTHER_ANGLE,
+     &(const stub_t){
+         .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 400, .holds = true, .hold_ddeg = 400, .hold_ms = TRIP_MS + 1460},
+     &(const stub_t){.safe_ms = TRIP_MS,
+                     .safe_end_ms = TRIP_MS + 1430,
+                     .open_ms = TRIP_MS + 400,
+                     .holds = true,
+                     .hold_ddeg = 400,
+                     .hold_ms = TRIP_MS + 1410},
+     BAD_ANGLES_TWICE},
     /* manual drops the angle of the trip soon after it was sent late: one frame that was on its way still leaves */
     {HAZARD_STEERING, ANOTHER_ANGLE, &STEERS_LATE, &STEERS_ONCE, MANUAL_SOON},
     {HAZARD_STEERING, ANOTHER_ANGLE, &(const stub_t){.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 10, .holds = true}, NULL,
