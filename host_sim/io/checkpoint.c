@@ -202,13 +202,13 @@ static bool check_head(const checkpoint_t *checkpoint, const head_t *head, size_
 static bool read_all(const checkpoint_t *checkpoint, const checkpoint_part_t parts[], size_t count, FILE *stream) {
     const head_t expected = head_of(checkpoint, parts, count);
     uint32_t checksum = 0;
-    bool whole = true;
     head_t head;
 
     const size_t size = fread(&head, 1, sizeof head, stream);
     if (!check_head(checkpoint, &head, size, &expected)) {
         return false;
     }
+    bool whole = size == sizeof head;
     for (size_t i = 0; whole && (i < count); i++) {
         whole = fread(parts[i].bytes, parts[i].size, 1, stream) == 1;
     }
