@@ -3,11 +3,12 @@
  * skipped, and after it each bit of each register that it writes is flipped. What follows is judged from the bus and the safety
  * output.
  *
- * usage: sweep IMAGE [--window NAME] [--pc FROM-TO] [--shard I/N] [--every N] [--table FILE]
+ * usage: sweep IMAGE [--window NAME] [--pc FROM-TO] [--shard I/N] [--every N | --bits N] [--table FILE]
  *
  * --pc FROM-TO: only instructions at these addresses, hexadecimal, without the last one.
  * --shard I/N: the I-th of N parts of the instructions, from 0.
  * --every N: every N-th flip and 30 times as many of the skips, chosen by a hash.
+ * --bits N: each skip, and at least N flips in each register that an instruction writes: evenly apart, the first by a hash.
  * --table FILE: a line for each disturbed instruction is added to it. What a run that was ended has left there is not done again.
  *
  * Prints a line of sums after each window, and at the end what harm there was: then the exit status is 1.
@@ -36,6 +37,7 @@ static struct {
     unsigned shard;
     unsigned shards;
     unsigned every;
+    unsigned bits; /* 0: as `every` says */
     unsigned from;
     unsigned to;
 } options = {.shards = 1, .every = 1, .to = UINT32_MAX};
@@ -329,8 +331,9 @@ static void open_table(void) {
     if (options.table == NULL) {
         return;
     }
-    (void)snprintf(head, sizeof head, "# image %016llx, shard %u/%u, every %u\n",
-                   (unsigned long long)machine_image_hash(), options.shard, options.shards, options.every);
+    const bool by_bits = options.bits > 0;
+    (void)snprintf(head, sizeof head, "# image %016llx, shard %u/%u, %s %u\n", (unsigned long long)machine_image_hash(),
+                   options.shard, options.shards, by_bits ? "bits" : "every", by_bits ? options.bits : options.every);
     table = fopen(options.table, "r+");
     table = (table != NULL) ? table : fopen(options.table, "w+");
     if (table == NULL) {
@@ -347,10 +350,27 @@ static void open_table(void) {
 
 /* ---- One instruction ---- */
 
-static bool is_chosen(uint64_t index, uint32_t what, uint32_t bit) {
+/* The lowest bit of a register that is flipped: only the flags of the program status, and no bit of the instruction set. */
+static uint32_t lowest_bit(uint32_t what) {
+    return (what == FLAGS) ? 28 : ((what == MACHINE_PC) ? 1 : 0);
+}
+
+static uint64_t hash_of(uint64_t index, uint32_t what, uint32_t bit) {
     const uint64_t number = (((uint64_t)(window - WORLD) << 56) ^ (index << 16) ^ (what << 8) ^ bit) + 1;
+    return mixed(mixed(number, 1), 2);
+}
+
+static bool is_one_of_bits(uint64_t index, uint32_t what, uint32_t bit) {
+    const uint32_t apart = (32 - lowest_bit(what)) / options.bits;
+    return (apart <= 1) || (((bit + hash_of(index, what, 0)) % apart) == 0);
+}
+
+static bool is_chosen(uint64_t index, uint32_t what, uint32_t bit) {
+    if (options.bits > 0) {
+        return (what == SKIP) || is_one_of_bits(index, what, bit);
+    }
     const unsigned every = (what == SKIP) ? ((options.every + 29) / 30) : options.every;
-    return (mixed(mixed(number, 1), 2) % every) == 0;
+    return (hash_of(index, what, bit) % every) == 0;
 }
 
 static void disturb(const snapshot_t *state, uint32_t offset, uint32_t what, uint32_t bit,
@@ -414,8 +434,7 @@ static void disturb_instruction(const snapshot_t *before, const snapshot_t *afte
         if (((written >> r) & 1) == 0) {
             continue;
         }
-        const uint32_t low = (r == FLAGS) ? 28 : ((r == MACHINE_PC) ? 1 : 0);
-        for (uint32_t bit = low; bit < 32; bit++, count++) {
+        for (uint32_t bit = lowest_bit(r); bit < 32; bit++, count++) {
             if (is_chosen(index, r, bit)) {
                 changed = *after;
                 *((r == FLAGS) ? &changed.cpu.psr : &changed.cpu.r[r]) ^= 1u << bit;
@@ -537,8 +556,9 @@ static void sweep_window(unsigned number) {
 /* ---- */
 
 static void usage(void) {
-    (void)fprintf(stderr,
-                  "usage: sweep IMAGE [--window NAME] [--pc FROM-TO] [--shard I/N] [--every N] [--table FILE]\n");
+    (void)fprintf(
+        stderr,
+        "usage: sweep IMAGE [--window NAME] [--pc FROM-TO] [--shard I/N] [--every N | --bits N] [--table FILE]\n");
     exit(2);
 }
 
@@ -553,6 +573,11 @@ static void read_option(const char *name, char *value, char **end) {
         options.to = (**end == '-') ? (unsigned)strtoul(*end + 1, end, 16) : 0;
     } else if (strcmp(name, "--every") == 0) {
         options.every = (unsigned)strtoul(value, end, 10);
+    } else if (strcmp(name, "--bits") == 0) {
+        options.bits = (unsigned)strtoul(value, end, 10);
+        if ((options.bits == 0) || (options.bits > 32)) {
+            usage();
+        }
     } else if (strcmp(name, "--shard") == 0) {
         options.shard = (unsigned)strtoul(value, end, 10);
         options.shards = (**end == '/') ? (unsigned)strtoul(*end + 1, end, 10) : 0;
