@@ -41,6 +41,19 @@ static void refuse(const char *path, const char *why) {
     exit(2);
 }
 
+/* The table of image.c at the beginning of the flash. */
+static bool is_start(const start_t *found) {
+    const uint32_t ram = BOARD_RAM;
+    const uint32_t in_ram[] = {found->stack, found->latch, found->log, found->log_end};
+    for (uint32_t i = 0; i < sizeof in_ram / sizeof in_ram[0]; i++) {
+        if ((in_ram[i] < ram) || (in_ram[i] > ram + BOARD_RAM_SIZE - 16)) {
+            return false;
+        }
+    }
+    return (found->reset < BOARD_FLASH_SIZE) && (found->architecture >= 6) && (found->architecture <= 7) &&
+           (found->topology <= 1);
+}
+
 const start_t *machine_image(const char *path) {
     static uint8_t file[4u << 20];
     Elf32_Ehdr head;
@@ -53,6 +66,9 @@ const start_t *machine_image(const char *path) {
     (void)memcpy(&head, file, sizeof head);
     if ((size < sizeof head) || (memcmp(head.e_ident, ELFMAG, SELFMAG) != 0) || (head.e_machine != EM_ARM)) {
         refuse(path, "not an image of a Cortex-M");
+    }
+    if ((head.e_phoff > size) || (head.e_phnum > (size - head.e_phoff) / sizeof(Elf32_Phdr))) {
+        refuse(path, "is cut off");
     }
     for (uint32_t i = 0; i < head.e_phnum; i++) {
         Elf32_Phdr part;
@@ -67,6 +83,9 @@ const start_t *machine_image(const char *path) {
         (void)memcpy(&flash[part.p_paddr], &file[part.p_offset], part.p_filesz);
     }
     (void)memcpy(&start, flash, sizeof start);
+    if (!is_start(&start)) {
+        refuse(path, "is no image of tests/proofs/image");
+    }
     return &start;
 }
 

@@ -6,12 +6,13 @@
  * usage: sweep IMAGE [--window NAME] [--pc FROM-TO] [--shard I/N] [--every N | --bits N] [--table FILE]
  *
  * --pc FROM-TO: only instructions at these addresses, hexadecimal, without the last one.
- * --shard I/N: the I-th of N parts of the instructions, from 0.
+ * --shard I/N: the I-th of N parts of the instructions.
  * --every N: every N-th flip and 30 times as many of the skips, chosen by a hash.
  * --bits N: each skip, and at least N flips in each register that an instruction writes: evenly apart, the first by a hash.
  * --table FILE: a line for each disturbed instruction is added to it. What a run that was ended has left there is not done again.
  *
- * Prints a line of sums after each window, and at the end what harm there was: then the exit status is 1.
+ * Prints a line of sums after each window, and at the end what harm there was: then the exit status is 1. It is 2 if nothing was
+ * disturbed.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,11 +37,11 @@ static struct {
     const char *table;
     unsigned shard;
     unsigned shards;
-    unsigned every;
-    unsigned bits; /* 0: as `every` says */
+    unsigned every; /* 0: not given */
+    unsigned bits;  /* 0: not given */
     unsigned from;
     unsigned to;
-} options = {.shards = 1, .every = 1, .to = UINT32_MAX};
+} options = {.shard = 1, .shards = 1, .to = UINT32_MAX};
 
 static const start_t *start;
 static machine_t *runner;
@@ -514,7 +515,7 @@ static void run_usual(const snapshot_t *before) {
 
 static bool is_mine(unsigned number, uint64_t index, uint32_t pc) {
     return (pc >= options.from) && (pc < options.to) && (index >= resumed[number]) &&
-           ((index % options.shards) == options.shard);
+           ((index % options.shards) == options.shard - 1);
 }
 
 static void sweep_window(unsigned number) {
@@ -555,33 +556,53 @@ static void sweep_window(unsigned number) {
 
 /* ---- */
 
-static void usage(void) {
+static _Noreturn void usage(void) {
     (void)fprintf(
         stderr,
         "usage: sweep IMAGE [--window NAME] [--pc FROM-TO] [--shard I/N] [--every N | --bits N] [--table FILE]\n");
     exit(2);
 }
 
-/* An option with its value, of which `end` is what was not understood. */
-static void read_option(const char *name, char *value, char **end) {
+/* A whole number of an option, in 1..most. @param end where it has to end: the text behind it */
+static unsigned number_in(const char *value, unsigned long most, const char **end) {
+    char *behind;
+    const unsigned long number = strtoul(value, &behind, 10);
+    if ((value[0] < '0') || (value[0] > '9') || (number < 1) || (number > most)) {
+        usage();
+    }
+    *end = behind;
+    return (unsigned)number;
+}
+
+/* FROM-TO */
+static void read_range(const char *value) {
+    char *end;
+    options.from = (unsigned)strtoul(value, &end, 16);
+    options.to = (*end == '-') ? (unsigned)strtoul(end + 1, &end, 16) : 0;
+    if ((*end != '\0') || (options.from >= options.to)) {
+        usage();
+    }
+}
+
+static void read_option(const char *name, const char *value) {
+    const char *end = "";
     if (strcmp(name, "--window") == 0) {
         options.window = value;
     } else if (strcmp(name, "--table") == 0) {
         options.table = value;
     } else if (strcmp(name, "--pc") == 0) {
-        options.from = (unsigned)strtoul(value, end, 16);
-        options.to = (**end == '-') ? (unsigned)strtoul(*end + 1, end, 16) : 0;
+        read_range(value);
     } else if (strcmp(name, "--every") == 0) {
-        options.every = (unsigned)strtoul(value, end, 10);
+        options.every = number_in(value, 1000000, &end);
     } else if (strcmp(name, "--bits") == 0) {
-        options.bits = (unsigned)strtoul(value, end, 10);
-        if ((options.bits == 0) || (options.bits > 32)) {
-            usage();
-        }
+        options.bits = number_in(value, 32, &end);
     } else if (strcmp(name, "--shard") == 0) {
-        options.shard = (unsigned)strtoul(value, end, 10);
-        options.shards = (**end == '/') ? (unsigned)strtoul(*end + 1, end, 10) : 0;
+        options.shard = number_in(value, 1000000, &end);
+        options.shards = (*end == '/') ? number_in(end + 1, 1000000, &end) : 0;
     } else {
+        usage();
+    }
+    if (*end != '\0') {
         usage();
     }
 }
@@ -592,15 +613,13 @@ static void read_options(int argc, char **argv) {
     }
     options.image = argv[1];
     for (int i = 2; i < argc; i += 2) {
-        char nothing[] = "";
-        char *end = nothing;
-        read_option(argv[i], argv[i + 1], &end);
-        if (*end != '\0') {
-            usage();
-        }
+        read_option(argv[i], argv[i + 1]);
     }
-    if ((options.shard >= options.shards) || (options.every == 0) || (options.from >= options.to)) {
+    if ((options.shard > options.shards) || ((options.every > 0) && (options.bits > 0))) {
         usage();
+    }
+    if ((options.every == 0) && (options.bits == 0)) {
+        options.every = 1;
     }
 }
 
@@ -637,6 +656,10 @@ int main(int argc, char **argv) {
     }
     if (!found) {
         usage();
+    }
+    if (sum.done == 0) {
+        (void)fprintf(stderr, "sweep: no instruction of these windows and addresses was disturbed\n");
+        return 2;
     }
     if (sum.verdicts[HARMFUL] == 0) {
         return 0;

@@ -8,7 +8,7 @@ Prints the sums of each window, and the places that did harm (Markdown). OUT is 
 pages are made anew without the image.
 --out FILE: all lines, with function, source line and instruction. --sums PAGE, --places PAGE: puts the one or the other also
 into this page, between `<!-- IMAGE -->` and `<!-- end -->`. --most SHARE: exit status 1 if more of 1000 disturbances did harm.
-Exit status 1 also if a place that did harm has no cause in causes.tsv.
+Exit status 1 also if a place that did harm has no cause in causes.tsv, and if the TABLEs are not all shards of one sweep.
 """
 import argparse
 import collections
@@ -71,6 +71,24 @@ def read(table, places=None):
             yield read_line
 
 
+def check_heads(tables):
+    """Each shard once, of one image, with one choice of disturbances: the first lines that sweep writes."""
+    sweeps, shards = set(), []
+    for table in tables:
+        with open(table, encoding="utf-8") as text:
+            head = re.fullmatch(r"# image (\w+), shard (\d+)/(\d+), (\w+ \d+)\n", text.readline())
+        if not head:
+            sys.exit(f"table: {table}: is no table of sweep")
+        sweeps.add((head[1], head[3], head[4]))
+        shards.append(int(head[2]))
+    if len(sweeps) > 1:
+        sys.exit("table: the tables are of several sweeps: another image, number of shards, or choice of disturbances")
+    count = int(sweeps.pop()[1])
+    wrong = [shard for shard in range(1, count + 1) if shards.count(shard) != 1]
+    if wrong or len(shards) != count:
+        sys.exit(f"table: shard {wrong[0] if wrong else max(shards)} of {count} is missing or given twice")
+
+
 def sums_of(lines):
     """For each window, and for all: instructions, their disturbances, those that were done by verdict."""
     sums = collections.defaultdict(lambda: [0] * 6)
@@ -125,11 +143,19 @@ def read_causes():
     return causes
 
 
-def causes_of(causes, place, harm, windows):
+def is_astray(place, disturbance):
+    """A branch or a call that goes, or returns, to a wrong place."""
+    is_branch = re.match(r"(b|bl|bx|blx|tbb|tbh|cbn?z|b(eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le))(\.[nw])? ", place.instruction)
+    return bool(is_branch) and disturbance.partition(".")[0] in ("pc", "lr")
+
+
+def causes_of(causes, place, harm, windows, disturbances):
     """The keys of a place in these windows; none if one of them has no line."""
-    name = "(end)" if re.match(r"pop|ldmia.* sp!", place.instruction) else place.function
-    keys = set()
-    for window in windows:
+    on_stack = re.match(r"(pop|push|(sub|add)(\.w)? sp,)|(ldmia|stmdb)(\.w)? sp!", place.instruction)
+    name = "(stack)" if on_stack else place.function
+    astray = [disturbance for disturbance in disturbances if is_astray(place, disturbance)]
+    keys = {"C17"} if astray else set()
+    for window in windows if len(astray) < len(disturbances) else ():
         fit = [line[3] for line in causes if line[0] == name and line[1] in (harm, "*") and line[2] in (window, "*")]
         if not fit:
             return []
@@ -150,7 +176,7 @@ def page_of_places(lines, places, causes, missing):
     yield "|---|---|---|---|---|---|---|"
     for (pc, harm), (windows, disturbances) in sorted(found.items(), key=lambda item: (places[item[0][0]][:2], item[0])):
         place = places[pc]
-        keys = causes_of(causes, place, harm, windows)
+        keys = causes_of(causes, place, harm, windows, disturbances)
         if not keys:
             missing.add(f"{place.function} ({harm})")
         yield (f"| `{place.function}` | {place.source} | `{place.instruction.split(' <')[0]}` | {words_of(disturbances)} | {harm} | "
@@ -179,6 +205,7 @@ def main():
     name = pathlib.Path(options.image).name.split(".")[0]
     places = {}
     if options.tables:
+        check_heads(options.tables)
         lines = sorted(line for table in options.tables for line in read(table))
         places = places_in(options.image, sorted({line.pc for line in lines}))
     else:
