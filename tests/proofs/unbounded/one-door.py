@@ -34,7 +34,7 @@ STARTS = ("agv_core_begin", "agv_core_begin_corrupted", "agv_supervisor_start")
 WRITES = ("memcpy", "memmove", "memset", "hal_store_read_latch", "hal_store_read_record")
 HEADERS = ("<string.h>", '"hal/store.h"', '"supervisor/supervisor_internal.h"')
 OPTIONS = ("-std=c11", "-fsyntax-only", "-I.", "-Ifirmware/include", "-Ifirmware/src", f"-I{TREE / 'hal/include'}",
-           "-include", "watched.h", "-Wcast-qual", "-Wc++-compat", "-Wdeprecated-declarations", "-ftrack-macro-expansion=0",
+           "-include", "watched.h", "-Wcast-qual", "-Wc++-compat", "-Wstrict-prototypes", "-Wdeprecated-declarations", "-ftrack-macro-expansion=0",
            "-fno-diagnostics-show-caret", "-fdiagnostics-color=never", "-fmax-errors=0")
 
 # What gcc must report: file, function, message.
@@ -64,9 +64,9 @@ REPORTED = (
 # What the search must find: file, text.
 CAST = re.compile(r"\((?!const\b)(?:\w+ )+\*[* ]*(?:const)?\)|\( \*\)")  # in the sources of the supervisor
 UNTYPED = re.compile(r"(?<!const )\bvoid \*")
-# Pointers as numbers or under another name, extensions of the compiler, and what stops its reports.
+# Pointers as numbers or under another name, arguments without a type, extensions of the compiler, and what stops its reports.
 HIDDEN = re.compile(r"# ?pragma|\b(?:_Pragma|asm|union|u?intptr_t|__(?!cplusplus\b)[a-z]\w*)\b|"
-                    r"\btypedef [^;{}()]*\*\w+ ?;|\} \*\w+ ?;")
+                    r"\btypedef [^;{}()]*\*\w+ ?;|\} \*\w+ ?;|\bva_\w+|\.\.\.")
 PROGRAM = re.compile(r"\bagv_supervisor_start\b")
 FOUND = (
     (CORE, "(agv_core_t *)"),
@@ -146,6 +146,8 @@ def by_search(root):
 
 def main(words):
     root = pathlib.Path(words[0] if words else TREE)
+    if len(words) > 1 or not (root / CORE).is_file():
+        sys.exit(f"one-door: usage: one-door.py [ROOT]; {root} has no {CORE}")
     searched = by_search(root)
     with tempfile.TemporaryDirectory() as folder:
         copy = pathlib.Path(folder)
