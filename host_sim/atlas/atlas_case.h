@@ -1,7 +1,7 @@
 /**
  * @file atlas_case.h
- * The cases of the atlas: every ordered pair of faults, in every state in which the first one can happen, in both
- * topologies, at four distances.
+ * The cases of the atlas: every ordered pair of faults, in every state in which both can be caused, in both topologies,
+ * at four distances.
  */
 #ifndef HOST_SIM_ATLAS_CASE_H
 #define HOST_SIM_ATLAS_CASE_H
@@ -13,6 +13,9 @@
 
 /** The state of the supervisor when the first fault comes. */
 typedef enum { ATLAS_INIT, ATLAS_STANDBY, ATLAS_ACTIVE, ATLAS_TRIPPED, ATLAS_SAFE, ATLAS_STATES } atlas_state_t;
+
+/** A state as a bit. */
+#define ATLAS_IN(state) (1u << (state))
 
 /** "ACTIVE" */
 const char *atlas_state_name(atlas_state_t state);
@@ -31,7 +34,7 @@ typedef struct {
     uint32_t distance; /**< index in ATLAS_DISTANCE_MS */
 } atlas_case_t;
 
-/** Numbers of cases are below this. Some of them cannot happen. */
+/** Numbers of cases are below this. Many of them cannot happen. */
 uint32_t atlas_case_count(void);
 
 /**
@@ -40,7 +43,10 @@ uint32_t atlas_case_count(void);
  */
 bool atlas_case_get(uint32_t number, atlas_case_t *pair);
 
-/** Both faults take the supervisor from the bus for a while: it hangs, restarts, or its controller is off. */
+/** The fault takes the supervisor from the bus for a while: it hangs, restarts, or its controller is off. */
+bool atlas_case_silences(const campaign_row_t *row);
+
+/** Both faults take the supervisor from the bus for a while. */
 bool atlas_case_is_silent_twice(const atlas_case_t *pair);
 
 /** One fault of a pair alone, at the same time. */

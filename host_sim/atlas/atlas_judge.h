@@ -24,7 +24,8 @@ const char *atlas_weakness_name(atlas_weakness_t weakness);
 
 /**
  * Judge a pair by its baselines. Two exceptions: where both faults take the supervisor from the bus, the first safe command
- * may come 400 ms later; and where the first one comes in INIT, the second one may be over before INIT has ended.
+ * may come 400 ms later, and 1600 ms later if the second one is TX_STALLED; and where the first one comes in INIT, the
+ * second one may be over before INIT has ended.
  */
 atlas_weakness_t atlas_judge(const atlas_case_t *of, const atlas_outcome_t *pair, const atlas_outcome_t *first,
                              const atlas_outcome_t *second);

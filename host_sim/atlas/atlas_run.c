@@ -16,7 +16,7 @@
 
 enum { LOOK_FOR_SIGNALS_EVERY = 16, SHOWN_MAX = 20 };
 
-/** A half that was played: it is the same for all pairs that contain it. */
+/** A half that was played: it is the same for all cases that contain it. */
 typedef struct {
     bool known;
     atlas_outcome_t outcome;
@@ -79,13 +79,14 @@ static void write_head(atlas_t *atlas) {
 static void write_case(atlas_t *atlas, uint32_t number, const atlas_case_t *pair, const atlas_outcome_t *halves[2],
                        atlas_weakness_t weakness) {
     output_json(&atlas->results,
-                json_pack("{s:i, s:s, s:s, s:s, s:s, s:i, s:o, s:o, s:o, s:s?}", "case", (int)number, "topology",
+                json_pack("{s:i, s:s, s:s, s:s, s:s, s:i, s:o, s:o, s:o, s:s?, s:s?}", "case", (int)number, "topology",
                           pair->gateway ? "gateway" : "shared", "in", atlas_state_name(pair->state), "first",
                           agv_fault_name(pair->first->fault), "second", agv_fault_name(pair->second->fault),
                           "distance_ms", (int)ATLAS_DISTANCE_MS[pair->distance], "both",
                           outcome_json(&atlas->play.outcome), "first_alone", outcome_json(halves[0]), "second_alone",
                           outcome_json(halves[1]), "weaker",
-                          (weakness == ATLAS_SOUND) ? NULL : atlas_weakness_name(weakness)),
+                          (weakness == ATLAS_SOUND) ? NULL : atlas_weakness_name(weakness), "known",
+                          atlas_known_reason(pair, weakness)),
                 JSON_COMPACT);
 }
 
@@ -103,7 +104,7 @@ static void show_weak(atlas_t *atlas, uint32_t number, const atlas_case_t *pair,
     }
 }
 
-/** Play a pair, after its halves. @return false: reported */
+/** Play a case, after its halves. @return false: reported */
 static bool run_one(atlas_t *atlas, uint32_t number, const atlas_case_t *pair) {
     const atlas_outcome_t *halves[2] = {half_of(atlas, pair, false), half_of(atlas, pair, true)};
     if ((halves[0] == NULL) || (halves[1] == NULL) || !atlas_play(&atlas->play, pair)) {
@@ -160,10 +161,22 @@ static status_t run_shard(atlas_t *atlas) {
         return STATUS_UNUSABLE;
     }
     (void)fprintf(output_is_stdout(results) ? stderr : stdout,
-                  "%" PRIu32 " pairs, %" PRIu32 " weaker than their worse baseline, %" PRIu32
+                  "%" PRIu32 " cases, %" PRIu32 " weaker than their worse baseline, %" PRIu32
                   " more for a known reason\n",
                   atlas->cases, atlas->weak, atlas->known);
     return (atlas->weak == 0) ? STATUS_OK : STATUS_UNMET;
+}
+
+/** The options leave a case. @return false: reported */
+static bool has_cases(const atlas_request_t *request) {
+    for (uint32_t number = 0; number < atlas_case_count(); number++) {
+        atlas_case_t pair;
+        if (takes_part(request, number, &pair)) {
+            return true;
+        }
+    }
+    return report("--first %s --second %s: no case: in no state can the second of these faults follow the first",
+                  agv_fault_name(request->first->fault), agv_fault_name(request->second->fault));
 }
 
 static status_t show_one(uint32_t number) {
@@ -188,6 +201,9 @@ static status_t show_one(uint32_t number) {
 status_t atlas_run(const atlas_request_t *request) {
     if (request->shows_one) {
         return show_one(request->one);
+    }
+    if (!has_cases(request)) {
+        return STATUS_UNUSABLE;
     }
     atlas_t *atlas = calloc(1, sizeof *atlas);
     if (atlas == NULL) {

@@ -15,14 +15,14 @@
 typedef struct {
     uint32_t shard; /**< 1 .. shards */
     uint32_t shards;
-    const campaign_row_t *first;  /**< only pairs with this first fault; NULL: all */
+    const campaign_row_t *first;  /**< only cases with this first fault; NULL: all */
     const campaign_row_t *second; /**< the same of the second one */
     const char *results;          /**< file; NULL: none */
     bool shows_one;               /**< print case `one` as a scenario, nothing else */
     uint32_t one;
 } atlas_request_t;
 
-/** Run. @return STATUS_UNMET: a pair is weaker than its worse baseline */
+/** Run. @return STATUS_UNMET: a pair is weaker than its worse baseline in some case */
 status_t atlas_run(const atlas_request_t *request);
 
 #endif

@@ -11,9 +11,12 @@
 enum {
     DRIVE_MS = 1000,
     ENGAGE_MS = 1500,
+    FLAP_MS = 2000,
+    FLAP_END_MS = 2400,
     TRIP_MS = 3000,
     LATE_AI_MS = 800,
     AFTERWARDS_MS = 7000, /* VEHICLE_NOT_STOPPING takes 5 s */
+    DRIVE_STEPS_MAX = 4,
     HEX = 16
 };
 
@@ -24,9 +27,9 @@ uint32_t atlas_first_ms(atlas_state_t state) {
     return FIRST_MS[state];
 }
 
-/** The steps of both faults, in the order of time. */
+/** The steps of the drive and of both faults, in the order of time. */
 typedef struct {
-    campaign_step_t steps[2 * CAMPAIGN_STEPS_MAX];
+    campaign_step_t steps[DRIVE_STEPS_MAX + 2 * CAMPAIGN_STEPS_MAX];
     size_t count;
 } steps_t;
 
@@ -89,8 +92,22 @@ static void add_top(text_t *text, const atlas_case_t *pair) {
     text_add(text, "%s%s", tops[0], (strcmp(tops[0], tops[1]) == 0) ? "" : tops[1]);
 }
 
+static bool is_of(const atlas_case_t *pair, agv_fault_t fault) {
+    return ((pair->first != NULL) && (pair->first->fault == fault)) ||
+           ((pair->second != NULL) && (pair->second->fault == fault));
+}
+
+/** Outside ACTIVE a lost AI computer warns by default. */
+static bool trips_in_manual(const atlas_case_t *pair) {
+    return (pair->state != ATLAS_ACTIVE) &&
+           (is_of(pair, AGV_FAULT_AI_HEARTBEAT_LOST) || is_of(pair, AGV_FAULT_AI_HEARTBEAT_STUCK));
+}
+
 static void add_config(text_t *text, const atlas_case_t *pair) {
     text_add(text, "config:\n  park: %s\n", (pair->state == ATLAS_TRIPPED) ? "at_standstill" : "at_once");
+    if (trips_in_manual(pair)) {
+        text_add(text, "  ai_lost_in_manual: trip\n");
+    }
     if (pair->first != NULL) {
         campaign_settings(text, pair->first);
     }
@@ -104,16 +121,30 @@ static bool starts_late(const atlas_case_t *pair, const campaign_row_t *row) {
     return !pair->gateway && (row != NULL) && ((row->flags & CAMPAIGN_LATE_AI) != 0);
 }
 
-/** The vehicle drives, or has tripped, before the first fault comes. */
-static void add_drive(text_t *text, atlas_state_t state) {
-    text_add(text, "  - {at_ms: %d, ai: drive, gear: D, throttle_pct: 20, steer_deg: 5}\n", DRIVE_MS);
-    if (state == ATLAS_STANDBY) {
-        text_add(text, "  - {at_ms: %d, operator: drive, gear: D, throttle_pct: 20}\n", ENGAGE_MS);
+static void add_step(steps_t *all, uint32_t at_ms, const char *words) {
+    campaign_step_t step = {.at_ms = at_ms};
+    (void)snprintf(step.words, sizeof step.words, "%s", words);
+    add_sorted(all, &step);
+}
+
+/** The vehicle drives, or has tripped, before the first fault comes; in INIT afterwards. */
+static void add_drive(steps_t *all, atlas_state_t state) {
+    add_step(all, DRIVE_MS, "ai: drive, gear: D, throttle_pct: 20, steer_deg: 5");
+    if ((state == ATLAS_STANDBY) || (state == ATLAS_INIT)) {
+        add_step(all, ENGAGE_MS, "operator: drive, gear: D, throttle_pct: 20");
     } else {
-        text_add(text, "  - {at_ms: %d, operator: engage}\n", ENGAGE_MS);
+        add_step(all, ENGAGE_MS, "operator: engage");
     }
     if ((state == ATLAS_TRIPPED) || (state == ATLAS_SAFE)) {
-        text_add(text, "  - {at_ms: %d, ai: mute, message: steering_command}\n", TRIP_MS);
+        add_step(all, TRIP_MS, "ai: mute, message: steering_command");
+    }
+}
+
+/** MODE_FLAPPING is the fourth engagement: in STANDBY there was none before. */
+static void add_engagement(steps_t *all, const atlas_case_t *pair) {
+    if ((pair->state == ATLAS_STANDBY) && is_of(pair, AGV_FAULT_MODE_FLAPPING)) {
+        add_step(all, FLAP_MS, "operator: engage");
+        add_step(all, FLAP_END_MS, "operator: disengage");
     }
 }
 
@@ -121,6 +152,8 @@ static void add_steps(text_t *text, const atlas_case_t *pair) {
     const uint32_t first_ms = FIRST_MS[pair->state];
     steps_t all = {.count = 0};
 
+    add_drive(&all, pair->state);
+    add_engagement(&all, pair);
     if (pair->first != NULL) {
         add_row(&all, pair->first, first_ms, pair->gateway);
     }
@@ -128,14 +161,8 @@ static void add_steps(text_t *text, const atlas_case_t *pair) {
         add_row(&all, pair->second, first_ms + ATLAS_DISTANCE_MS[pair->distance], pair->gateway);
     }
     text_add(text, "steps:\n");
-    if (pair->state != ATLAS_INIT) {
-        add_drive(text, pair->state);
-    }
     for (size_t i = 0; i < all.count; i++) {
         text_add(text, "  - {at_ms: %" PRIu32 ", %s}\n", all.steps[i].at_ms, all.steps[i].words);
-    }
-    if (pair->state == ATLAS_INIT) {
-        add_drive(text, ATLAS_STANDBY);
     }
 }
 

@@ -20,10 +20,10 @@ typedef struct {
 
 static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_t rows[] = {
-        OPTION_TEXT("--shard", "I/N", "only part I of N of the pairs (1/1)", &given->shard),
-        OPTION_FAULT("--first", "only pairs with this first fault", &given->first),
-        OPTION_FAULT("--second", "only pairs with this second fault", &given->second),
-        OPTION_TEXT("--results", "FILE", "results of each pair, and of each of the two alone, as JSON Lines",
+        OPTION_TEXT("--shard", "I/N", "only part I of N of the cases (1/1)", &given->shard),
+        OPTION_FAULT("--first", "only cases with this first fault", &given->first),
+        OPTION_FAULT("--second", "only cases with this second fault", &given->second),
+        OPTION_TEXT("--results", "FILE", "results of each case, and of each of the two alone, as JSON Lines",
                     &given->results),
         OPTION_NUMBER("--show", "CASE", "only print this case, as a scenario", &given->show, 0,
                       (uint64_t)atlas_case_count() - 1),
@@ -31,14 +31,13 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_group_t groups[] = {{.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]}};
     static const option_example_t examples[] = {
         {"host_sim atlas --first EMERGENCY_STOP --second BUS_OFF", "one pair, in every state and topology"},
-        {"host_sim atlas --shard 1/1000 --results atlas-1.jsonl", "a part of all pairs"},
+        {"host_sim atlas --shard 1/1000 --results atlas-1.jsonl", "a part of all cases"},
     };
     const option_syntax_t syntax = {
         .usage = "atlas [OPTION]...",
-        .summary =
-            "Cause every ordered pair of faults on the simulated bus, in every state in which the first one can\n"
-            "happen, in both topologies, 0, 1, 50 and 500 ms apart, and compare each pair with each of the two\n"
-            "alone.\n",
+        .summary = "Cause every ordered pair of faults on the simulated bus, in every state in which both can be\n"
+                   "caused, in both topologies, 0, 1, 50 and 500 ms apart, and compare each of these cases with each\n"
+                   "of the two faults alone.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .examples = examples,

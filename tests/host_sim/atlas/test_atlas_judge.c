@@ -54,6 +54,18 @@ void test_a_supervisor_that_is_silent_twice_may_take_400_ms_more(void) {
     TEST_ASSERT_EQUAL(ATLAS_LATE_FRAME, atlas_judge(&of, &pair, &FIRST, &SECOND));
 }
 
+void test_a_stall_may_take_1600_ms_more_after_a_silent_supervisor(void) {
+    of.first = campaign_row(AGV_FAULT_BUS_OFF);
+    of.second = campaign_row(AGV_FAULT_TX_STALLED);
+    pair.safe_us = 1900000;
+    TEST_ASSERT_EQUAL(ATLAS_SOUND, atlas_judge(&of, &pair, &FIRST, &SECOND));
+    pair.safe_us = 1900001;
+    TEST_ASSERT_EQUAL(ATLAS_LATE_FRAME, atlas_judge(&of, &pair, &FIRST, &SECOND));
+    of.first = campaign_row(AGV_FAULT_S_DRIVER_ALARM);
+    pair.safe_us = 330001;
+    TEST_ASSERT_EQUAL(ATLAS_LATE_FRAME, atlas_judge(&of, &pair, &FIRST, &SECOND));
+}
+
 void test_a_later_output_than_in_both_halves(void) {
     pair.open_us = ATLAS_NEVER;
     TEST_ASSERT_EQUAL(ATLAS_LATE_OUTPUT, atlas_judge(&of, &pair, &SECOND, &SECOND));
@@ -94,4 +106,14 @@ void test_known_reasons(void) {
     of.second = campaign_row(AGV_FAULT_FOREIGN_COMMAND_SENDER);
     TEST_ASSERT_NOT_NULL(atlas_known_reason(&of, ATLAS_HAZARD));
     TEST_ASSERT_NULL(atlas_known_reason(&of, ATLAS_NOT_LATCHED));
+    of.state = ATLAS_SAFE;
+    TEST_ASSERT_NULL(atlas_known_reason(&of, ATLAS_HAZARD));
+}
+
+void test_a_known_reason_of_each_second_fault_that_silences_the_supervisor(void) {
+    of.first = campaign_row(AGV_FAULT_AI_HEARTBEAT_LOST);
+    of.state = ATLAS_TRIPPED;
+    TEST_ASSERT_NOT_NULL(atlas_known_reason(&of, ATLAS_LATE_FRAME));
+    of.second = campaign_row(AGV_FAULT_S_DRIVER_ALARM);
+    TEST_ASSERT_NULL(atlas_known_reason(&of, ATLAS_LATE_FRAME));
 }

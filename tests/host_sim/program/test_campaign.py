@@ -253,14 +253,14 @@ class AtlasPage(hostsim.Case):
         half = {"reason": None, "state": "STANDBY", "safe_us": None, "open_us": None, "stop_us": None, "hazard": None}
         head = {"atlas": 1, "version": "0.2.0", "shard": 1, "shards": 1}
         case = {"case": 8, "topology": "shared", "in": "STANDBY", "first": "BUS_OFF", "second": "TX_STALLED", "distance_ms": 0,
-                "both": half, "first_alone": half, "second_alone": half, "weaker": None}
+                "both": half, "first_alone": half, "second_alone": half, "weaker": None, "known": None}
         return json.dumps(head) + "\n" + json.dumps(case) + "\n"
 
     def test_a_pair_is_of_two_faults(self):
         self.write("a", self.results())
         done = self.make("a", "-o", "a.html")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertIn("1 pair of 2 faults, weaker than their worse baseline: none", done.stdout)
+        self.assertIn("1 case of 2 faults, weaker than their worse baseline: none", done.stdout)
 
     def test_what_is_refused_in_one_line_with_the_file(self):
         self.write("bytes", b"\x7fELF\xff\xfe")

@@ -36,7 +36,9 @@ ROWS = {
         ("--show 100 --results r", "--show prints one case"),
         ("--show 4 --first BUS_OFF", "--show prints one case"),
         ("--show 4 --shard 1/2", "--show prints one case"),
-        ("--first BUS_OFF --second BUS_OFF", "--first and --second are the same fault, BUS_OFF: a fault is not paired with itself")),
+        ("--first BUS_OFF --second BUS_OFF", "--first and --second are the same fault, BUS_OFF: a fault is not paired with itself"),
+        ("--first BUS_OFF --second SELF_TEST_FAILED", "--first BUS_OFF --second SELF_TEST_FAILED: no case: in no state can"),
+        ("--first SELF_TEST_FAILED --second GEAR_DEVIATION", "no case: in no state can the second of these faults follow the first")),
     "campaign": (
         ("", "--runs is missing"),
         ("--runs 3", "--seed is missing"),

@@ -13,6 +13,7 @@ import sys
 
 TEMPLATE = pathlib.Path(__file__).with_name("atlas.html")
 HALVES = ("both", "first_alone", "second_alone")
+SLOWER_US = 30000
 
 
 class Problem(Exception):
@@ -68,16 +69,17 @@ class Atlas:
                 self.take(json.loads(line))
 
     def take(self, case):
-        self.rows.append(";".join(
-            [str(self.words[case[key]]) for key in ("topology", "in", "first", "second")] + [str(case["distance_ms"])] +
-            [",".join([str(self.words[half["reason"] or "-"]), str(self.words[half["state"]]), ms(half["safe_us"]),
-                       ms(half["open_us"]), ms(half["stop_us"]), half["hazard"] or ""])
-             for half in (case[name] for name in HALVES)] + [case["weaker"] or ""]))
-        if case["weaker"]:
-            self.weaker[case["weaker"]] += 1
         times = [case[name]["safe_us"] for name in HALVES]
         quicker = min((time for time in times[1:] if time is not None), default=None)
-        self.slower += quicker is not None and (times[0] is None or times[0] > quicker + 30000)
+        slower = quicker is not None and (times[0] is None or times[0] > quicker + SLOWER_US)
+        self.slower += slower
+        self.rows.append(";".join(
+            [str(case["case"])] + [str(self.words[case[key]]) for key in ("topology", "in", "first", "second")] + [str(case["distance_ms"])] +
+            [",".join([str(self.words[half["reason"] or "-"]), str(self.words[half["state"]]), ms(half["safe_us"]),
+                       ms(half["open_us"]), ms(half["stop_us"]), half["hazard"] or ""])
+             for half in (case[name] for name in HALVES)] + [case["weaker"] or "", case["known"] or "", "slow" if slower else ""]))
+        if case["weaker"]:
+            self.weaker[case["weaker"]] += 1
 
     def check_whole(self):
         twice = [shard for shard, count in self.shards.items() if count > 1]
@@ -94,8 +96,8 @@ class Atlas:
 
     def figures(self):
         weak = ", ".join(f"{count} {name}" for name, count in sorted(self.weaker.items())) or "none"
-        faults = {fault for row in self.rows for fault in row.split(";")[2:4]}
-        return (f"{counted(len(self.rows), 'pair')} of {counted(len(faults), 'fault')}, weaker than their worse baseline: {weak}; "
+        faults = {fault for row in self.rows for fault in row.split(";")[3:5]}
+        return (f"{counted(len(self.rows), 'case')} of {counted(len(faults), 'fault')}, weaker than their worse baseline: {weak}; "
                 f"first safe frame later than in the quicker baseline: {self.slower}")
 
 
