@@ -3,7 +3,8 @@
 Tables that are read:
   docs/evidence.md                      claim, way and what is not shown, by hand; [`name`] in the second column is a proof of
                                         tests/proofs, or a name of figures.tsv
-  tests/proofs/figures.tsv              command, date, revision and figure of a name (scripts/verify --record)
+  tests/proofs/figures.tsv              commands (with "; " between them), date, revision and figure of a name
+                                        (scripts/verify --record)
   tests/proofs/seeded.tsv               the stored mutant of a row (checker `row`): the file that is changed
   tests/proofs/mutation/figures.tsv     mutants of a file (mutate.py merge --record), once they were all tried
   docs/hunt.md                          the rows that a hazard judges
@@ -44,7 +45,7 @@ def figure_cells(names, figures):
     for name in names:
         figure = figures.get(name, Figure(f"scripts/verify {name}", "-", "-", "not recorded"))
         when = "" if figure.date == "-" else f" ({figure.date}, `{figure.revision}`)"
-        commands.append(f"`{figure.command}`")
+        commands += [f"`{command}`" for command in figure.command.split("; ")]
         texts.append((f"`{name}`: " if len(names) > 1 else "") + figure.text + when)
     return ["<br>".join(commands), "<br>".join(texts)]
 

@@ -502,7 +502,9 @@ def report_compare(derived, measured):
         print(line)
     missing = [row["fault"] for row in measured.rows if not measured.runs[row["fault"]]]
     near = sum(time >= derived.reaction[key] / NEAR for key, time in measured.reaction.items())
-    print(f"{measured.total} runs, {len(measured.runs)} faults (least {min(measured.runs.values(), default=0)} runs of one), "
+    engaged = sum(fault.endswith(ENGAGED) for fault in measured.runs)
+    print(f"{measured.total} runs, {len(measured.runs) - engaged} faults, {engaged} of them also at an engagement (least "
+          f"{min(measured.runs.values(), default=0)} runs of one), "
           f"{len(measured.reaction)} greatest times: {len(above)} above the derived time, {near} at least 1/{NEAR} of it")
     return not above and not (missing and measured.total > 10000)
 
