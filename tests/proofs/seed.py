@@ -11,6 +11,7 @@ usage: seed.py check                    the old text of each line must occur exa
        seed.py tree CHECKER[/NAME]...   run the command of each line in a copy of this tree with the change: same
        seed.py fails CHECKER/NAME COMMAND...
                                         run this command: same
+       seed.py --help                   this text
 
 Several lines of one name are one fault. A line with no old text appends the new one; in the new
 text \\n is the end of a line. A line with no file changes nothing, and its command is run in this tree.
@@ -30,6 +31,9 @@ sys.path.insert(0, str(ROOT / "tests/support"))
 import tree  # noqa: E402
 
 SECONDS = 1800  # a flip of each bit takes minutes
+# the words that a command needs
+NEEDS = {"check": "", "list": "CHECKER", "rows": "CHECKER", "apply": "CHECKER/NAME FOLDER", "run": "CHECKER[/NAME]",
+         "tree": "CHECKER[/NAME]", "fails": "CHECKER/NAME COMMAND"}
 
 
 class Fault:
@@ -79,12 +83,17 @@ def read():
     return list(faults.values())
 
 
+def refuse(text):
+    print(f"seed: {text}", file=sys.stderr)
+    sys.exit(2)
+
+
 def of(*words):
     """Those of checkers, or CHECKER/NAME."""
     faults = read()
     for word in words:
         if not any(word in (fault.checker, f"{fault.checker}/{fault.name}") for fault in faults):
-            sys.exit(f"seed: there is no seeded fault {word}")
+            refuse(f"there is no seeded fault {word}")
     return [fault for fault in faults if fault.checker in words or f"{fault.checker}/{fault.name}" in words]
 
 
@@ -103,6 +112,8 @@ def execute(command, cwd):
         return result.returncode, result.stdout
     except subprocess.TimeoutExpired:
         return 0, f"nothing was said in {SECONDS} s"
+    except OSError as error:
+        return 0, f"it cannot be run: {error}"
 
 
 def run_program(fault, folder):
@@ -141,8 +152,34 @@ def run_all(faults, how, folder):
     return found != len(faults)
 
 
+def folder_of(words):
+    """Takes --bin and its folder out of the words."""
+    if "--bin" not in words:
+        return ROOT / "build/host/bin"
+    at = words.index("--bin")
+    if at + 1 == len(words):
+        refuse("--bin needs a folder")
+    folder = pathlib.Path(words[at + 1])
+    del words[at:at + 2]
+    return folder
+
+
+def check_words(what, rest):
+    if what not in NEEDS:
+        refuse(f"there is no command {what}; --help lists them" if what else "no command; --help lists them")
+    if len(rest) < len(NEEDS[what].split()):
+        refuse(f"{what} needs {NEEDS[what]}")
+    if rest and not NEEDS[what]:
+        refuse(f"{what} takes nothing")
+
+
 def main(words):
     what, rest = (words[0], words[1:]) if words else ("", [])
+    if what == "--help":
+        print(__doc__.strip())
+        return 0
+    folder = folder_of(rest) if what == "run" else None
+    check_words(what, rest)
     if what == "check":
         faults = read()
         for fault in faults:
@@ -157,18 +194,14 @@ def main(words):
     elif what == "apply":
         apply(of(rest[0])[0], pathlib.Path(rest[1]), "--paths" in rest)
     elif what == "run":
-        folder = pathlib.Path(rest[rest.index("--bin") + 1] if "--bin" in rest else ROOT / "build/host/bin")
-        checkers = rest[:rest.index("--bin")] if "--bin" in rest else rest
-        return run_all(of(*checkers), run_program, folder)
+        return run_all(of(*rest), run_program, folder)
     elif what == "tree":
-        with tempfile.TemporaryDirectory(prefix="seed") as folder:
-            return run_all(of(*rest), run_in_tree, folder)
-    elif what == "fails":
+        with tempfile.TemporaryDirectory(prefix="seed") as copies:
+            return run_all(of(*rest), run_in_tree, copies)
+    else:
         good, line = of(rest[0])[0].judge(*execute(rest[1:], None))
         print(line)
         return not good
-    else:
-        sys.exit(__doc__)
     return 0
 
 

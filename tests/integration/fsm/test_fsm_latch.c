@@ -179,6 +179,19 @@ void test_both_at_the_start_the_left_one_is_the_first(void) {
     expect_fault(&f, AGV_FAULT_CONFIG_INVALID, true);
 }
 
+/* The event of the self-test has the parts that failed; that of another fault has none. */
+/* Shows: INT-3 */
+void test_the_parts_that_failed_are_named_with_their_fault_alone(void) {
+    agv_event_t event;
+    f.self_test_passed = false;
+    f.config.vcu_heartbeat_timeout_ms = 0;
+    fixture_start(&f);
+    TEST_ASSERT_TRUE(fixture_last_raised(&f, AGV_FAULT_SELF_TEST_FAILED, &event));
+    TEST_ASSERT_EQUAL_HEX16(HAL_SELF_TEST_FLASH, event.missing);
+    TEST_ASSERT_TRUE(fixture_last_raised(&f, AGV_FAULT_CONFIG_INVALID, &event));
+    TEST_ASSERT_EQUAL_HEX16(0, event.missing);
+}
+
 /* Sent from constants, with the identifiers of this vehicle as far as they are valid. */
 /* Shows: FSM-9, P1 */
 void test_an_invalid_configuration_still_sends_on_the_vehicles_identifiers(void) {

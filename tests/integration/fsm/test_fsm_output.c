@@ -53,6 +53,20 @@ void test_autopilot_off_is_not_confirmed(void) {
     expect_open_until_the_reset();
 }
 
+/* A tick finds the AI computer silent: the 500 ms count from this tick. */
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+void test_after_a_trip_in_a_tick_the_time_counts_from_that_tick(void) {
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    (void)walk_until(&f, AGV_STATE_TRIPPED, 1000);
+    fixture_gear(&f, GEAR_P);
+    fixture_wheels(&f, 0, 0);
+    expect_fault_after(&f, 499, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
+    expect_output(&f, true);
+    expect_fault_after(&f, 1, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
+    expect_output(&f, false);
+}
+
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
 void test_p_is_not_confirmed(void) {
     walk_to_tripped(&f);

@@ -208,3 +208,17 @@ void test_a_latch_that_cannot_be_read_is_tripped_after_a_restart(void) {
     fixture_restart(&f, HAL_RESET_WATCHDOG);
     expect_tripped(&f, AGV_FAULT_SUPERVISOR_RESET);
 }
+
+/* Without a stored latch nothing else in memory counts as one: the same wherever the supervisor lies, over 64 kB. */
+/* Shows: FSM-7, SUPERVISOR_RESET */
+void test_a_restart_without_a_latch_has_no_other_reason_at_any_place(void) {
+    enum { PLACES = 65536 / sizeof(agv_supervisor_t) + 1 };
+    static agv_supervisor_t supervisors[PLACES];
+    fixture_start(&f);
+    sim_hal_reset(&f.hal, HAL_RESET_WATCHDOG);
+    for (unsigned i = 0; i < PLACES; i++) {
+        f.store.latch_size = 0;
+        agv_supervisor_start(&supervisors[i], &f.ports, &f.config, f.now_ms);
+        TEST_ASSERT_EQUAL(AGV_FAULT_SUPERVISOR_RESET, agv_supervisor_first_reason(&supervisors[i]));
+    }
+}

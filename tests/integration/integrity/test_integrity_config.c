@@ -13,6 +13,13 @@ void setUp(void) {
     agv_config_defaults(&config);
 }
 
+/* Shared bus, set heading, P at once. Each of these was at its default, or not valid. */
+static void expect_default_wiring(const agv_config_t *used, const char *what) {
+    TEST_ASSERT_EQUAL_UINT16_MESSAGE(0, used->topology, what);
+    TEST_ASSERT_EQUAL_UINT16_MESSAGE(0, used->id_set, what);
+    TEST_ASSERT_EQUAL_UINT16_MESSAGE(0, used->park, what);
+}
+
 static void expect_refused_at_start(const char *what) {
     f.what = what;
     f.config = config;
@@ -21,6 +28,7 @@ static void expect_refused_at_start(const char *what) {
     expect_output(&f, false);
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(3, f.sent_count, what);
     TEST_ASSERT_EQUAL_INT_MESSAGE(AGV_CONFIG_OK, agv_config_check(agv_supervisor_config(&f.supervisor)).problem, what);
+    expect_default_wiring(agv_supervisor_config(&f.supervisor), what);
     setUp();
 }
 
@@ -32,6 +40,8 @@ void test_a_supervisor_with_an_invalid_configuration_trips_and_uses_the_defaults
     expect_refused_at_start("no topology");
     config.id_set = 9;
     expect_refused_at_start("no ID set");
+    config.park = 5;
+    expect_refused_at_start("no time for P");
     config.id_throttle_command = 0x168;
     expect_refused_at_start("an identifier twice");
     config.own_heartbeat = AGV_OWN_HEARTBEAT_FROZEN;

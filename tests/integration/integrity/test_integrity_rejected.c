@@ -16,6 +16,7 @@ static const kind_t KINDS[] = {
     {"length 1", 0, 1, AGV_REJECTED_LENGTH},
     {"length 4", 0, 4, AGV_REJECTED_LENGTH},
     {"length 7", 0, 7, AGV_REJECTED_LENGTH},
+    {"length 9", 0, 9, AGV_REJECTED_LENGTH}, /* of a port that does not know FD */
     {"FD with 8 bytes", HAL_CAN_FD, 8, AGV_REJECTED_FD},
     {"FD with 64 bytes", HAL_CAN_FD, 64, AGV_REJECTED_FD},
     {"FD with 7 bytes", HAL_CAN_FD, 7, AGV_REJECTED_FD},

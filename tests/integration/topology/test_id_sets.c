@@ -100,6 +100,7 @@ void test_both_identifiers_at_once(void) {
 void test_malformed_frames_on_the_other_identifier(void) {
     static const hal_can_frame_t MALFORMED[] = {{.length = 7},
                                                 {.length = 0},
+                                                {.length = 9},
                                                 {.length = 8, .flags = HAL_CAN_EXTENDED},
                                                 {.length = 8, .flags = HAL_CAN_REMOTE},
                                                 {.length = 8, .flags = HAL_CAN_FD},
@@ -108,7 +109,7 @@ void test_malformed_frames_on_the_other_identifier(void) {
     f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].muted = true;
     fixture_standby(&f);
     for (unsigned round = 0; round < 300; round++) {
-        hal_can_frame_t frame = MALFORMED[round % 6];
+        hal_can_frame_t frame = MALFORMED[round % 7];
         frame.id = SETS[0].other_command_id;
         fixture_run(&f, 10);
         fixture_raw(&f, HAL_CAN_VEHICLE, frame);

@@ -155,6 +155,10 @@ void test_on_the_shared_bus_the_ai_side_is_ignored(void) {
     fixture_active(&f);
     expect_dropped(0x168, NO_GEAR);
     expect_dropped(0x363, ZERO);
+    expect_dropped(0x7FF, ZERO);
+    const uint32_t before = dropped();
+    fixture_raw(&f, HAL_CAN_AI, (hal_can_frame_t){.id = 0x168, .length = 7}); /* on the vehicle side it would trip */
+    TEST_ASSERT_EQUAL_UINT32(before + 1, dropped());
     expect_state(&f, AGV_STATE_ACTIVE);
 }
 

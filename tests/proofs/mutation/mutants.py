@@ -15,7 +15,8 @@ from clang.cindex import TypeKind
 # function: the name of the function around it, "" in a table
 Mutant = collections.namedtuple("Mutant", "id file line operator start end text lines function")
 
-RELATIONAL = {"<": ("<=", ">="), ">": (">=", "<="), "<=": ("<", ">"), ">=": (">", "<"), "==": ("!=",), "!=": ("==",)}
+RELATIONAL = {"<": ("<=", ">="), ">": (">=", "<="), "<=": ("<", ">"), ">=": (">", "<"),
+              "==": ("!=", "<=", ">="), "!=": ("==", "<", ">")}
 ARITHMETIC = {"+": "-", "-": "+", "*": "/", "/": "*", "%": "/", "&": "|", "|": "&", "^": "|", "<<": ">>", ">>": "<<"}
 LOGICAL = {"&&": "||", "||": "&&"}
 OPERATORS = ("relational", "arithmetic", "logical", "constant", "statement", "return")

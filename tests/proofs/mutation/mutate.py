@@ -5,7 +5,7 @@
   mutate prepare                           build what all shards need (they do it themselves, the first for all)
   mutate run [--shard i/n] [FILE...]       try those that have no result yet; results are appended to a file of lines
   mutate try ID...                         try some, and tell
-  mutate merge [RESULTS...]                sum up; fails below 95 % or above 5 %, or when a mutant has no result
+  mutate merge [RESULTS...]                sum up; fails when a mutant survived or has no result, below 95 % or above 5 %
   mutate rows [ROW...]                     the stored mutants of seeded.tsv: each breaks its row, and a test notices
 """
 import argparse
@@ -24,34 +24,60 @@ import rows  # noqa: E402
 
 KILLED_AT_LEAST, EQUIVALENT_AT_MOST = 95.0, 5.0
 VERDICTS = ("killed", "crash", "timeout", "sanitizer", "survived")
+NAMED = 5  # of many mutants with one problem, so many ids are printed
 
 
 def say(text):
     print(text, file=sys.stderr, flush=True)
 
 
-def all_mutants(names=()):
+def refuse(text):
+    say(f"mutate: {text}")
+    sys.exit(2)
+
+
+def check_files(names):
     known = [path.name for path in bench.core_files()]
     for name in names:
         if name not in known:
-            raise SystemExit(f"mutate: there is no {name} in firmware/src")
+            refuse(f"there is no {name} in firmware/src")
+
+
+def all_mutants(names=()):
+    check_files(names)
     arguments = ["-std=c11", *bench.INCLUDES]
     return [mutant for path in bench.core_files() if not names or path.name in names
             for mutant in mutants.find(path, path.name, arguments)]
 
 
 def read_results(paths):
-    """id -> result; of several the last that is not open. A line that was cut off when a run was stopped counts for nothing."""
+    """id -> result; of several the last that is not open."""
     results = {}
     for path in paths:
-        for line in path.read_text(encoding="utf-8").splitlines():
-            try:
-                result = json.loads(line)
-                if result["verdict"] != "open" or result["id"] not in results:
-                    results[result["id"]] = result
-            except (ValueError, KeyError):
-                say(f"{path.name}: a broken line is left out")
+        for result in read_lines(path):
+            if result["verdict"] != "open" or result["id"] not in results:
+                results[result["id"]] = result
     return results
+
+
+def read_lines(path):
+    """The results of a file. A line that was cut off when a run was stopped counts for nothing."""
+    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    results = [result for result in map(read_line, lines) if result]
+    if len(lines) > 1 and not results:
+        refuse(f"{path} is not a file of results")
+    if len(results) < len(lines):
+        say(f"{path.name}: {len(lines) - len(results)} broken lines are left out")
+    return results
+
+
+def read_line(line):
+    """The result, or nothing."""
+    try:
+        result = json.loads(line)
+    except ValueError:
+        return None
+    return result if isinstance(result, dict) and {"id", "verdict"} <= result.keys() else None
 
 
 def results_folder(key):
@@ -79,6 +105,8 @@ def command_list(arguments):
 
 
 def command_prepare(arguments):
+    if arguments.names:
+        refuse("prepare takes no name")
     with open_bench(arguments):
         pass
 
@@ -91,6 +119,7 @@ def open_bench(arguments):
 
 def command_run(arguments):
     shard, shards = arguments.shard
+    check_files(arguments.names)
     with open_bench(arguments) as at:
         folder = arguments.results or results_folder(at.digest)
         folder.mkdir(parents=True, exist_ok=True)
@@ -103,10 +132,12 @@ def command_run(arguments):
 
 
 def command_try(arguments):
+    if not arguments.names:
+        refuse("try needs the id of a mutant")
     found = {mutant.id: mutant for mutant in all_mutants()}
-    unknown = [key for key in arguments.names if key not in found]
-    if unknown or not arguments.names:
-        raise SystemExit(f"mutate: there is no mutant {unknown[0]}" if unknown else "mutate: try needs the id of a mutant")
+    for key in arguments.names:
+        if key not in found:
+            refuse(f"there is no mutant {key}")
     with open_bench(arguments) as at:
         for key in arguments.names:
             print(f"{key}  {found[key].text!r}  {' '.join(map(str, at.try_mutant(found[key])))}", flush=True)
@@ -137,22 +168,29 @@ def table(found, verdicts):
 
 
 def judge(found, results, equivalents, problems):
-    """id -> verdict."""
+    """id -> verdict. An equivalent was tried too: with the quick tests, which leave it open."""
     verdicts = {}
     for key in found:
-        verdicts[key] = results.get(key, {"verdict": "open"})["verdict"]
-        if key in equivalents:
-            if verdicts[key] not in ("survived", "open"):
-                problems.append(f"equivalents: {key} is {verdicts[key]}")
-            else:
-                verdicts[key] = "equivalent"
-        if verdicts[key] == "open":
-            problems.append(f"no result: {key}")
+        verdict = results[key]["verdict"] if key in results else ""
+        if key in equivalents and verdict in ("survived", "open"):
+            verdict = "equivalent"
+        elif key in equivalents and verdict:
+            problems.append(f"equivalents: {key} is {verdict}")
+        verdicts[key] = verdict or "open"
     return verdicts
+
+
+def name_some(verdicts, verdict, what, problems):
+    """One line for all mutants of a verdict that none may have."""
+    keys = [key for key in verdicts if verdicts[key] == verdict]
+    if keys:
+        problems.append(f"{len(keys)} {what}: {' '.join(keys[:NAMED])}{' ...' if len(keys) > NAMED else ''}")
 
 
 def sum_up(verdicts, problems):
     """The figures as one line."""
+    name_some(verdicts, "open", "without a result", problems)
+    name_some(verdicts, "survived", "survived", problems)
     of = collections.Counter(verdicts.values())
     counted = sum(of[name] for name in VERDICTS)
     killed = 100.0 * of["killed"] / max(counted, 1)
@@ -162,8 +200,9 @@ def sum_up(verdicts, problems):
     if share > EQUIVALENT_AT_MOST:
         problems.append(f"{share:.2f} % are equivalent, {EQUIVALENT_AT_MOST} % are allowed")
     return (f"{counted} mutants, {of['killed']} killed by an assertion ({killed:.2f} %), {of['crash']} crashed, "
-            f"{of['timeout']} timed out, {of['sanitizer']} found by a sanitizer, {of['survived']} survived; not counted: {of['equivalent']} equivalent ({share:.2f} %), "
-            f"{of['same']} of the same machine code, {of['compile']} that do not compile")
+            f"{of['timeout']} timed out, {of['sanitizer']} found by a sanitizer, {of['survived']} survived; "
+            f"not counted: {of['equivalent']} equivalent ({share:.2f} %), {of['same']} of the same machine code, "
+            f"{of['compile']} that do not compile")
 
 
 def record(verdicts):
@@ -182,11 +221,12 @@ def command_merge(arguments):
     paths = [pathlib.Path(name) for name in arguments.names] or sorted(folder.glob("*.jsonl"))
     for path in paths:
         if not path.is_file():
-            raise SystemExit(f"mutate: {path} is not a file of results")
+            refuse(f"{path} is not a file of results")
+    results = read_results(paths)
     found = {mutant.id: mutant for mutant in all_mutants()}
     problems = []
     equivalents = read_equivalents(set(found), problems)
-    verdicts = judge(found, read_results(paths), equivalents, problems)
+    verdicts = judge(found, results, equivalents, problems)
     table(found, verdicts)
     for key, verdict in verdicts.items():
         if verdict in VERDICTS[1:]:
@@ -206,7 +246,7 @@ def command_rows(arguments):
     wanted = subprocess.run([bench.ROOT / "scripts/tools/traceability.py"], stdout=subprocess.PIPE, check=True, text=True).stdout
     unknown = set(arguments.names) - rows.read_shown(wanted).keys()
     if unknown:
-        raise SystemExit(f"mutate: there is no row {sorted(unknown)[0]}")
+        refuse(f"there is no row {sorted(unknown)[0]}")
     with open_bench(arguments) as at:
         return rows.check(at, rows.read_shown(wanted), arguments.names)
 

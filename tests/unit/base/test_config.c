@@ -301,6 +301,14 @@ void test_an_ai_side_that_is_bus_off_trips_on_a_gateway_only(void) {
     expect_good();
 }
 
+/* Any other topology is no gateway. It is out of range; the fault is named as well. */
+void test_an_unknown_topology_has_no_ai_side(void) {
+    agv_fault_set_put(&config.trips, AGV_FAULT_AI_BUS_OFF, true);
+    config.topology = 2;
+    expect_problem(AGV_CONFIG_OUT_OF_RANGE, AGV_SETTING_topology);
+    TEST_ASSERT_EQUAL(AGV_FAULT_AI_BUS_OFF, agv_config_check(&config).fault);
+}
+
 /* Shows: INT-2 */
 void test_bits_beyond_the_faults_are_refused(void) {
     for (unsigned bit = AGV_FAULT_COUNT; bit < 32 * AGV_FAULT_WORDS; bit++) {

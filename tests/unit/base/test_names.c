@@ -18,6 +18,7 @@ void test_an_invalid_fault_has_no_name(void) {
 void test_classes(void) {
     TEST_ASSERT_EQUAL_STRING("trip", agv_class_name(AGV_CLASS_TRIP));
     TEST_ASSERT_EQUAL_STRING("warn", agv_class_name(AGV_CLASS_WARN));
+    TEST_ASSERT_EQUAL_STRING("warn", agv_class_name((agv_fault_class_t)255)); /* only a trip is called so */
 }
 
 void test_states(void) {

@@ -454,6 +454,48 @@ void test_a_press_during_which_the_receiver_is_lost(void) {
     TEST_ASSERT_EQUAL_UINT32(0, in_vain);
 }
 
+/* ---- The push button ---- */
+
+/* Debounced: at each tick it has this state. */
+static void read_for(agv_button_t button, uint32_t ms) {
+    for (uint32_t i = 0; i < ms; i++) {
+        agv_reset_button_read(&reset, (uint8_t)button);
+        run(1);
+    }
+}
+
+/* Tripped while the push button had this state. */
+static void trip_with(agv_button_t button) {
+    reset = (agv_reset_button_t){.is_pin = true};
+    agv_reset_button_read(&reset, (uint8_t)button);
+    agv_reset_button_trip(&reset, &timers);
+}
+
+/* Down from the trip on: no rising edge after it. The next press has one. */
+/* Shows: HW-3 */
+void test_a_push_button_that_is_down_at_the_trip_resets_nothing(void) {
+    trip_with(AGV_BUTTON_DOWN);
+    read_for(AGV_BUTTON_DOWN, 1500);
+    read_for(AGV_BUTTON_UP, 1);
+    expect_in_vain(AGV_MISSING_BUTTON);
+    in_vain = 0;
+    read_for(AGV_BUTTON_DOWN, 1500);
+    read_for(AGV_BUTTON_UP, 1);
+    expect_reset();
+}
+
+/* Before the press the input was not stable yet, or silent: this does not show that the button was up. */
+/* Shows: HW-3 */
+TEST_CASE(AGV_BUTTON_UNKNOWN)
+TEST_CASE(AGV_BUTTON_UNHEARD)
+void test_a_push_button_that_was_not_seen_up_resets_nothing(agv_button_t before) {
+    trip_with(before);
+    read_for(before, 1500);
+    read_for(AGV_BUTTON_DOWN, 1500);
+    read_for(AGV_BUTTON_UP, 1);
+    expect_in_vain(AGV_MISSING_BUTTON);
+}
+
 /* ---- Late steps ---- */
 
 /* No more than 1 s is kept. */

@@ -489,6 +489,20 @@ void test_an_unresettable_fault_that_comes_while_tripped_is_stored(void) {
     TEST_ASSERT_EQUAL_HEX32(AGV_ACTION_STORE_LATCH | AGV_ACTION_OPEN_OUTPUT, did.what);
 }
 
+/* Also one of a lower rank: OUTPUT_FEEDBACK, rank 3, after MEMORY_CORRUPTED, rank 1. */
+/* Shows: FSM-9 */
+void test_every_change_of_the_unresettable_fault_is_stored(void) {
+    to_safe();
+    facts.forever = AGV_FAULT_MEMORY_CORRUPTED;
+    step(1);
+    facts.forever = AGV_FAULT_OUTPUT_FEEDBACK;
+    step(1);
+    TEST_ASSERT_EQUAL_HEX32(AGV_ACTION_STORE_LATCH, did.what);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_OUTPUT_FEEDBACK, machine.unresettable);
+    step(1);
+    TEST_ASSERT_EQUAL_HEX32(0, did.what);
+}
+
 /* Shows: FSM-9 */
 void test_conditions_that_prevent_a_reset(void) {
     agv_state_machine_forbid_reset(&machine, AGV_FAULT_NONE);

@@ -44,7 +44,7 @@ static void use_stubs(void) {
     hal_store_write_latch_Stub(write_stub);
 }
 
-/* Latched, first reason EPS_HEARTBEAT_LOST (rank 10), nothing unresettable (56 = none). */
+/* Latched, first reason EPS_HEARTBEAT_LOST (rank 13), nothing unresettable (68 = none). */
 static void write_tripped(void) {
     use_stubs();
     agv_latch_write(&hal, AGV_LATCH_CLOSED, AGV_FAULT_EPS_HEARTBEAT_LOST, AGV_FAULT_NONE);
@@ -112,14 +112,38 @@ void test_a_record_of_another_size_is_corrupt(void) {
     }
 }
 
+static void store(const agv_latch_t *record, size_t size) {
+    use_stubs();
+    memcpy(stored, record, size);
+    stored_size = size;
+}
+
+/* The last byte of the checksum is 0, as is the byte that is not read: 96 02 1F 01 (by zlib: 00B68B02). */
+void test_a_record_without_its_last_byte_is_corrupt(void) {
+    const agv_latch_t record = {
+        .latched = 0x96, .first_reason = 2, .unresettable = 31, .version = 1, .checksum = 0x00B68B02u};
+    agv_latch_t latch;
+    store(&record, 7);
+    TEST_ASSERT_EQUAL(AGV_LATCH_CORRUPT, agv_latch_read(&hal, &latch));
+    store(&record, 8);
+    TEST_ASSERT_EQUAL(AGV_LATCH_VALID, agv_latch_read(&hal, &latch));
+}
+
+/* A record of an earlier layout, with a checksum that fits: 96 0D 03 00 (by zlib: 9A9AA1F4). */
+void test_an_earlier_layout_is_corrupt(void) {
+    const agv_latch_t earlier = {
+        .latched = 0x96, .first_reason = 13, .unresettable = 3, .version = 0, .checksum = 0x9A9AA1F4u};
+    agv_latch_t latch;
+    store(&earlier, sizeof earlier);
+    TEST_ASSERT_EQUAL(AGV_LATCH_CORRUPT, agv_latch_read(&hal, &latch));
+}
+
 /* A record of a later layout, with a checksum that fits: 96 0A 38 02 (by zlib: 4D693965). */
-void test_another_layout_is_corrupt(void) {
-    agv_latch_t later = {
+void test_a_later_layout_is_corrupt(void) {
+    const agv_latch_t later = {
         .latched = 0x96, .first_reason = 10, .unresettable = 56, .version = 2, .checksum = 0x4D693965u};
     agv_latch_t latch;
-    use_stubs();
-    memcpy(stored, &later, sizeof later);
-    stored_size = sizeof later;
+    store(&later, sizeof later);
     TEST_ASSERT_EQUAL(AGV_LATCH_CORRUPT, agv_latch_read(&hal, &latch));
 }
 

@@ -81,4 +81,5 @@ void test_a_fault_has_the_code_of_the_list(void) {
     TEST_ASSERT_EQUAL_INT(7, agv_led_code(AGV_FAULT_THROTTLE_STATUS_TIMEOUT));
     TEST_ASSERT_EQUAL_INT(-1, agv_led_code(AGV_FAULT_MEMORY_CORRUPTED));
     TEST_ASSERT_EQUAL_INT(-1, agv_led_code(AGV_FAULT_VCU_HEARTBEAT_LOST));
+    TEST_ASSERT_EQUAL_INT(-1, agv_led_code(AGV_FAULT_NONE + 1)); /* no fault: never shown as healthy */
 }

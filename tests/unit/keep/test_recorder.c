@@ -187,6 +187,18 @@ void test_an_event_in_a_wrong_place_is_dropped(void) {
     expect_gone(4);
 }
 
+/* The same when memory is shifted the other way. */
+void test_an_event_before_its_place_is_dropped(void) {
+    add(5);
+    recorder.events[1] = recorder.events[4];
+    recorder.events[4].kind = 0;
+    agv_recorder_start(&recorder);
+    TEST_ASSERT_EQUAL_UINT32(4, agv_recorder_next_sequence(&recorder));
+    expect_gone(1);
+    expect_gone(4);
+    expect_there(3);
+}
+
 /* Four events before the sequence wraps. */
 static void start_before_the_wrap(void) {
     recorder.next_sequence = 0xFFFFFFFCu;
@@ -376,12 +388,24 @@ void test_other_events_replace_no_trip(void) {
     const agv_entry_t others[] = {
         {.kind = AGV_EVENT_STATE, .a = AGV_STATE_SAFE, .b = AGV_STATE_TRIPPED, .c = AGV_FAULT_NONE},
         {.kind = AGV_EVENT_STATE, .a = AGV_STATE_TRIPPED, .b = AGV_STATE_SAFE, .c = AGV_FAULT_BUS_OFF},
+        {.kind = AGV_EVENT_STATE, .a = AGV_STATE_STANDBY, .b = AGV_STATE_ACTIVE, .c = AGV_FAULT_BUS_OFF},
         {.kind = AGV_EVENT_FAULT, .a = AGV_FAULT_BUS_OFF, .b = AGV_STATE_TRIPPED, .c = 1}};
     trip(1);
-    for (unsigned i = 0; i < 3; i++) {
+    for (unsigned i = 0; i < 4; i++) {
         agv_recorder_add(&recorder, &others[i], 2);
         expect_trips(1, 1);
     }
+}
+
+/* It is no event, so the oldest of the eight stays. */
+/* Shows: INT-3 */
+void test_an_entry_without_a_kind_replaces_no_trip(void) {
+    const agv_entry_t none = {.kind = 0, .a = AGV_STATE_ACTIVE, .b = AGV_STATE_TRIPPED, .c = AGV_FAULT_BUS_OFF};
+    for (uint32_t number = 1; number <= 8; number++) {
+        trip(number);
+    }
+    agv_recorder_add(&recorder, &none, 9);
+    expect_trips(8, 8);
 }
 
 /* Shows: INT-3 */
@@ -491,6 +515,9 @@ void test_a_start_with_another_reason_or_after_a_reset_is_a_trip(void) {
     TEST_ASSERT_EQUAL_UINT32(3, event.time_ms);
     TEST_ASSERT_TRUE(agv_recorder_get_trip(&recorder, 2, &event));
     TEST_ASSERT_FALSE(agv_recorder_get_trip(&recorder, 3, &event));
+    start_tripped(AGV_FAULT_BUS_OFF, 5); /* of a lower rank than the reason before it */
+    TEST_ASSERT_TRUE(agv_recorder_get_trip(&recorder, 0, &event));
+    TEST_ASSERT_EQUAL_UINT32(5, event.time_ms);
 }
 
 /* A torn event says nothing: then the start counts. */

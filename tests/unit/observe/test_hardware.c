@@ -222,6 +222,19 @@ void test_how_much_of_a_late_tick_counts(int before, bool closes, int at_its_end
     TEST_ASSERT_EQUAL_UINT16(wrong ? value_ms + 10 : value_ms - 5, hardware.mismatch.value_ms);
 }
 
+/* The same when the output opens: the contact was right until then. */
+/* Shows: HW-1, TIM-4 */
+void test_a_late_tick_after_the_output_opened_counts_1_ms(void) {
+    output_closed = true;
+    inputs.output_feedback = CLOSED;
+    ticks(60);
+    output_closed = false;
+    tick_after(10);
+    TEST_ASSERT_EQUAL_UINT16(0, hardware.mismatch.value_ms);
+    tick_after(10);
+    TEST_ASSERT_EQUAL_UINT16(10, hardware.mismatch.value_ms);
+}
+
 /* A board has its feedback always. One that is gone is a wrong contact in both positions. */
 /* Shows: HW-1 */
 TEST_CASE(false)

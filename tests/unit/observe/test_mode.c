@@ -390,6 +390,20 @@ void test_manual_in_one_frame_of_three_is_not_flapping(void) {
     TEST_ASSERT_FALSE(flickers(10, 10, 30, 200, true));
 }
 
+/* Neither bit is not manual. It lasts for 9 ms in 10, 900 ms in all. */
+/* Shows: SUP-9 */
+void test_neither_bit_while_engaged_is_not_flapping(void) {
+    (void)report(ENGAGED, 0);
+    for (uint32_t at_ms = 10; at_ms <= 1000; at_ms += 10) {
+        (void)report(NONE, at_ms);
+        ticks_to(at_ms + 8);
+        (void)report(ENGAGED, at_ms + 9);
+    }
+    expect_mode(false, true);
+    agv_mode_check(&mode, &timers, &faults, &config, true, true);
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_MODE_FLAPPING));
+}
+
 /* The next engagement counts from 0. */
 /* Shows: SUP-9 */
 void test_the_end_of_an_engagement_ends_the_flicker(void) {

@@ -10,7 +10,7 @@ static agv_config_t config;
 static agv_vehicle_t vehicle;
 static agv_gateway_facts_t facts;
 static bool limited;
-static uint8_t data[8];
+static uint8_t data[8 + 1]; /* a command, and a byte behind it, which must stay */
 
 void setUp(void) {
     gateway = (agv_gateway_t){0};
@@ -41,7 +41,9 @@ static bool may_wait(unsigned command) {
 }
 
 static void limit(agv_message_t command) {
+    data[8] = 0xFF;
     limited = agv_gateway_limit(&gateway, &facts, command, data);
+    TEST_ASSERT_EQUAL_HEX8(0xFF, data[8]);
 }
 
 /* Pass 8 bytes to the module and compare the result. */
@@ -189,6 +191,15 @@ void test_in_manual_the_throttle_is_0(void) {
     TEST_ASSERT_TRUE(limited);
     TEST_ASSERT_EQUAL_UINT(0, throttle(0));
     TEST_ASSERT_FALSE(limited);
+}
+
+/* ACTIVE is 3Ch. Any other state, valid or not, allows no throttle. */
+/* Shows: TOP-2 */
+void test_only_active_allows_throttle(void) {
+    for (unsigned value = 0; value < 256; value++) {
+        facts.state = (agv_state_t)value;
+        TEST_ASSERT_EQUAL_UINT((value == 0x3C) ? 250 : 0, throttle(250));
+    }
 }
 
 /* A received 168h: 1 D, 2 R, 4 N, 8 P. */
@@ -460,6 +471,7 @@ void test_steering_is_limited_above_a_speed(void) {
         TEST_ASSERT_TRUE(limited);
         wheels(0, fast[i]);
         TEST_ASSERT_EQUAL_INT(-100, steer(25, -101));
+        TEST_ASSERT_TRUE(limited);
         TEST_ASSERT_EQUAL_INT(-100, steer(25, -100));
         TEST_ASSERT_FALSE(limited);
         TEST_ASSERT_EQUAL_INT(100, steer(25, 100));

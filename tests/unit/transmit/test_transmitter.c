@@ -90,6 +90,17 @@ void test_p_that_was_held_back_is_sent_as_soon_as_it_may_be(void) {
     expect_sent(5, HAL_CAN_VEHICLE, 0x168, PARK);
 }
 
+/* In the safe state again without all commands at once: P is sent, the others wait for their slots. */
+/* Shows: FSM-1, FSM-2 */
+void test_only_p_does_not_wait_for_its_slot(void) {
+    burst();
+    orders.state = AGV_STATE_STANDBY;
+    EXPECT_COUNT_AFTER(1, 4);
+    orders.state = AGV_STATE_TRIPPED;
+    EXPECT_COUNT_AFTER(1, 5);
+    expect_sent(4, HAL_CAN_VEHICLE, 0x168, PARK);
+}
+
 /* ---- The report ---- */
 
 void test_a_report_is_taken_once(void) {
@@ -470,6 +481,23 @@ void test_throttle_0_that_waits_is_discarded_and_replaced(void) {
     EXPECT_COUNT_AFTER(10, 2);
     expect_sent_data(0, 0x168, DRIVE);
     expect_sent_data(1, 0x075, half);
+}
+
+/* In the next engagement the HAL takes another command before the throttle 0. */
+/* Shows: TOP-2 */
+TEST_CASE(AGV_MSG_TURN_SIGNAL_COMMAND)
+TEST_CASE(AGV_MSG_GEAR_COMMAND)
+TEST_CASE(AGV_MSG_STEERING_COMMAND)
+void test_throttle_0_is_not_replaced_by_another_command(unsigned command) {
+    be_gateway();
+    hal_takes = false;
+    end_engagement();
+    orders.state = AGV_STATE_ACTIVE;
+    hal_takes = true;
+    pass(command, (command == AGV_MSG_GEAR_COMMAND) ? DRIVE : ZEROS);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    EXPECT_COUNT_AFTER(10, 2);
+    expect_sent_data(1, 0x075, ZEROS);
 }
 
 /* Shows: TOP-2, SUP-7 */
