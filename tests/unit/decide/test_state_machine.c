@@ -512,13 +512,33 @@ void test_conditions_that_prevent_a_reset(void) {
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_CONFIG_INVALID, machine.unresettable);
 }
 
+/* Of the 256 codes of a state only that of SAFE (5Ah) allows one. */
+/* Shows: FSM-7, INT-5 */
+void test_a_code_that_is_not_that_of_safe_allows_no_reset(void) {
+    to_safe();
+    for (unsigned code = 0; code < 256; code++) {
+        machine.state = (uint8_t)code;
+        TEST_ASSERT_EQUAL_HEX32((code == 0x5A) ? 0 : AGV_MISSING_STATE, lacks());
+    }
+}
+
+/* INIT is 0Fh. */
+static void expect_late_in_init_only(void) {
+    const uint8_t state = machine.state;
+    for (unsigned code = 0; code < 256; code++) {
+        machine.state = (uint8_t)code;
+        TEST_ASSERT_EQUAL(code == 0x0F, agv_state_machine_is_startup_late(&machine, &timers));
+    }
+    machine.state = state;
+}
+
 /* Shows: STARTUP_TIMEOUT */
 void test_the_startup_is_late_in_init_only(void) {
     facts.missing = AGV_MISSING_MANUAL;
     run(10000);
     TEST_ASSERT_FALSE(agv_state_machine_is_startup_late(&machine, &timers));
     step(1);
-    TEST_ASSERT_TRUE(agv_state_machine_is_startup_late(&machine, &timers));
+    expect_late_in_init_only();
     facts.missing = 0;
     expect_state_after(501, AGV_STATE_STANDBY);
     TEST_ASSERT_FALSE(agv_state_machine_is_startup_late(&machine, &timers));

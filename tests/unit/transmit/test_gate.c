@@ -144,6 +144,25 @@ void test_the_gateway_that_passes_all_in_manual(void) {
     expect_as_the_oracle_in_every_state();
 }
 
+/* One value of a setting opens the gate, whatever agv_config_check lets pass. */
+/* Shows: INT-4, TOP-1, TOP-2 */
+TEST_CASE(2)
+TEST_CASE(0xFFFF)
+void test_a_value_without_meaning_opens_nothing(unsigned value) {
+    static const uint8_t drive[8] = {1};
+    static const uint8_t any[8] = {0};
+    gate.state = AGV_STATE_ACTIVE;
+    config.topology = (uint16_t)value;
+    TEST_ASSERT_FALSE(allows(HAL_CAN_VEHICLE, 0x168, drive));
+    TEST_ASSERT_FALSE(allows(HAL_CAN_AI, 0x363, any));
+    config.topology = AGV_TOPOLOGY_GATEWAY;
+    TEST_ASSERT_TRUE(allows(HAL_CAN_VEHICLE, 0x168, drive));
+    TEST_ASSERT_TRUE(allows(HAL_CAN_AI, 0x363, any));
+    gate.state = AGV_STATE_STANDBY;
+    config.gateway_in_manual = (uint16_t)value;
+    TEST_ASSERT_FALSE(allows(HAL_CAN_VEHICLE, 0x168, drive));
+}
+
 /* Number of permitted values among the 65536 of the first two bytes (of 43Fh: bytes 5 and 8). */
 static unsigned count_allowed(uint32_t id, unsigned first, unsigned second) {
     unsigned count = 0;
@@ -294,6 +313,17 @@ void test_in_shadow_mode_nothing_reaches_the_hal(void) {
     TEST_ASSERT_EQUAL(AGV_GATE_SHADOWED, agv_gate_send(&gate, &hal, HAL_CAN_VEHICLE, &frame));
     frame.data[0] = 1;
     TEST_ASSERT_EQUAL(AGV_GATE_REFUSED, agv_gate_send(&gate, &hal, HAL_CAN_VEHICLE, &frame));
+}
+
+/* Only the value `on` keeps a safe command back. */
+/* Shows: FSM-6, TOP-4 */
+TEST_CASE(2)
+TEST_CASE(0xFFFF)
+void test_a_safe_command_leaves_with_a_value_of_shadow_without_meaning(unsigned value) {
+    const hal_can_frame_t frame = {.id = 0x168, .length = 8, .data = {8}};
+    config.shadow = (uint16_t)value;
+    hal_can_send_ExpectAndReturn(&hal, HAL_CAN_VEHICLE, &frame, true);
+    TEST_ASSERT_EQUAL(AGV_GATE_SENT, agv_gate_send(&gate, &hal, HAL_CAN_VEHICLE, &frame));
 }
 
 /* The gate uses the configured identifiers, not those of the protocol. */
