@@ -18,13 +18,14 @@ static const hazard_info_t INFOS[HAZARD_KINDS] = {
                          "may be held (docs/hunt.md)",
                          "065h carries the measured angle, or is not sent"},
     [HAZARD_FALSE_COMMAND] = {"H3",
-                              "a command to move on the vehicle side of a gateway that the AI computer did not "
-                              "send, or not recently",
+                              "the supervisor commands motion in the safe state or on a shared bus, or the vehicle "
+                              "side of a gateway has a command to move that the AI computer did not send, or not "
+                              "recently",
                               "such a command is never sent; one of a rogue node is followed by the safe "
                               "commands"},
     [HAZARD_UNCONFIRMED] = {"H4",
-                            "the safety output stays closed though the safe state is not confirmed for longer "
-                            "than the total time allowed",
+                            "the safety output stays closed though P is not commanded, or though the safe state "
+                            "is not confirmed for longer than the total time allowed",
                             "the safety output opens"},
     [HAZARD_RESET] = {"H5",
                       "a reset that no operator asked for by pressing and releasing the reset button after the trip",
