@@ -176,25 +176,16 @@ void test_holes_do_not_end_the_kept_events(void) {
     TEST_ASSERT_EQUAL_UINT32(17, store_all(1));
 }
 
-/* A valid event in the wrong place (shifted memory) is dropped. */
-void test_an_event_in_a_wrong_place_is_dropped(void) {
+/* A valid event in the wrong place is dropped, to whichever side memory is shifted. */
+TEST_CASE(100)
+TEST_CASE(1)
+void test_an_event_in_a_wrong_place_is_dropped(unsigned place) {
     add(5);
-    recorder.events[100] = recorder.events[4];
+    recorder.events[place] = recorder.events[4];
     recorder.events[4].kind = 0;
     agv_recorder_start(&recorder);
     TEST_ASSERT_EQUAL_UINT32(4, agv_recorder_next_sequence(&recorder));
-    expect_gone(100);
-    expect_gone(4);
-}
-
-/* The same when memory is shifted the other way. */
-void test_an_event_before_its_place_is_dropped(void) {
-    add(5);
-    recorder.events[1] = recorder.events[4];
-    recorder.events[4].kind = 0;
-    agv_recorder_start(&recorder);
-    TEST_ASSERT_EQUAL_UINT32(4, agv_recorder_next_sequence(&recorder));
-    expect_gone(1);
+    expect_gone(place);
     expect_gone(4);
     expect_there(3);
 }
